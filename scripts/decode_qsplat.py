@@ -1,0 +1,411 @@
+#!/usr/bin/env python3
+"""A second decoder of .qsplat version 1, written from format-spec.md alone.
+
+It is slow and plain on purpose: where it and the Rust decoder disagree, one of them or the
+specification is wrong. Prints all splats as JSON with every digit.
+
+    decode_qsplat.py FILE.qsplat > FILE.json
+
+Needs Python 3.8 and, for zstd, the module `compression.zstd` (Python 3.14) or `zstandard`, or
+the command `zstd`.
+"""
+
+import json
+import math
+import struct
+import subprocess
+import sys
+import zlib
+
+STREAMS = ["KIND", "CELL", "SIZE", "SHAP", "NORM", "BEND", "SPIN", "MORE", "ENDS", "CTRL", "RHO "]
+BIAS = 1 << 27
+
+
+class Bad(Exception):
+    """The file breaks a rule of the specification."""
+
+
+def require(condition, why):
+    if not condition:
+        raise Bad(why)
+
+
+# Section 3: header, table, chunks ------------------------------------------------------------
+
+
+def unzstd(frame):
+    try:
+        from compression import zstd
+
+        return zstd.decompress(frame)
+    except ImportError:
+        pass
+    try:
+        import zstandard
+
+        return zstandard.ZstdDecompressor().decompressobj().decompress(frame)
+    except ImportError:
+        pass
+    return subprocess.run(["zstd", "-d", "-c", "-q"], input=frame, stdout=subprocess.PIPE, check=True).stdout
+
+
+def read_header(data):
+    require(len(data) >= 108, "shorter than a header")
+    fields = struct.unpack_from("<8sHBB5I7BBi8d", data)
+    magic, version, chunks, common = fields[:4]
+    require(magic == b"\x89QSP\r\n\x1a\n", "magic")
+    require(version == 1, "version")
+    names = ["cell", "height", "slide", "tilt", "bend", "spin", "clip"]
+    head = dict(zip(["required", "optional", "splats", "straight", "curved"], fields[4:9]))
+    head["common"] = common
+    head["steps"] = dict(zip(names, fields[9:16]))
+    head["guesses"], head["exponent"] = fields[16:18]
+    floats = fields[18:]
+    head["origin"], head["diagonal"], head["E"], head["fit"] = floats[:3], floats[3], floats[4], floats[5:]
+    require(all(math.isfinite(x) for x in floats), "a float that is not finite")
+    require(head["required"] & ~3 == 0, "an unknown required feature")
+    require(2.0**-60 <= head["diagonal"] <= 2.0**60, "diagonal")
+    require(2.0**-24 * head["diagonal"] <= head["E"] <= 16 * head["diagonal"], "max error")
+    require(all(x >= 0 for x in head["fit"]) and abs(head["exponent"]) <= 1000, "fit or exponent")
+    steps = head["steps"]
+    require(all(steps[n] > 0 for n in ["cell", "tilt", "bend", "spin", "clip"]), "a step of zero")
+    require(steps["height"] <= 12 and steps["slide"] <= 12 and head["guesses"] <= 3, "steps")
+    return head, chunks
+
+
+def read_chunks(data, count):
+    end = 108 + 17 * count
+    require(len(data) >= end + 4, "shorter than its table")
+    require(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "header checksum")
+    chunks, at = {}, end + 4
+    for n in range(count):
+        name, flags, raw, coded, check = struct.unpack_from("<4sBIII", data, 108 + 17 * n)
+        body = data[at : at + coded]
+        at += coded
+        require(len(body) == coded and zlib.crc32(body) == check, "a chunk's checksum or length")
+        name = name.decode("latin-1")
+        require(name not in chunks and flags & ~3 == 0, "chunk twice, or unknown flags")
+        if name not in STREAMS + ["BITS", "COLR"]:
+            require(flags & 1 == 0, "an unknown required chunk")
+            continue
+        if flags & 2:
+            body = unzstd(b"\x28\xb5\x2f\xfd" + body)
+        require(len(body) == raw and raw > 0, "a chunk's decoded length")
+        chunks[name] = body
+    require(at == len(data), "bytes after the last chunk")
+    return chunks
+
+
+# Section 4: symbols and extra bits -----------------------------------------------------------
+
+
+class Tape:
+    def __init__(self, chunks, common):
+        self.symbols = {name: iter(chunks.get(name, b"")) for name in STREAMS}
+        bits = chunks.get("BITS", b"")
+        self.bits_left = 8 * len(bits)
+        self.bits_value = int.from_bytes(bits, "big")
+        self.common = None if "KIND" in chunks else common
+
+    def symbol(self, stream):
+        value = next(self.symbols[stream], None)
+        require(value is not None, "stream " + stream + " ends too early")
+        return value
+
+    def bits(self, count):
+        require(count <= self.bits_left, "extra bits end too early")
+        self.bits_left -= count
+        return self.bits_value >> self.bits_left & ((1 << count) - 1)
+
+    def kind(self):
+        return self.symbol("KIND") if self.common is None else self.common
+
+    def number(self, stream):
+        symbol = self.symbol(stream)
+        if symbol < 8:
+            return symbol
+        extra = (symbol - 8) // 2 + 2
+        require(extra + 2 <= 100, "a symbol that does not exist")
+        return ((2 + symbol % 2) << extra) + self.bits(extra)
+
+    def near(self, stream, guess, most):
+        z = self.number(stream)
+        require(z < 1 << 60, "a difference out of range")
+        value = guess + (z // 2 if z % 2 == 0 else -(z + 1) // 2)
+        require(abs(value) <= most, "a value out of range")
+        return value
+
+    def finish(self):
+        require(all(next(s, None) is None for s in self.symbols.values()), "symbols are left over")
+        require(self.bits_left < 8 and self.bits(self.bits_left) == 0, "extra bits are left over")
+
+
+# Section 5: grids ----------------------------------------------------------------------------
+
+
+def sin_cos(n, count):
+    octant, rest = divmod(8 * n, count)
+    x = (rest if octant % 2 == 0 else count - rest) / count * 0.7853981633974483
+    y, s, c = x * x, 1.0, 1.0
+    for k in [210.0, 156.0, 110.0, 72.0, 42.0, 20.0, 6.0]:
+        s = 1.0 - y * s / k
+    for k in [240.0, 182.0, 132.0, 90.0, 56.0, 30.0, 12.0, 2.0]:
+        c = 1.0 - y * c / k
+    s = x * s
+    return [(s, c), (c, s), (c, -s), (s, -c), (-s, -c), (-c, -s), (-c, s), (-s, c)][octant]
+
+
+def radius(size):
+    return (32 + size % 32) * 2.0 ** (size // 32 - 9)
+
+
+def sign(x):
+    return -1.0 if x < 0 else 1.0
+
+
+def normal_of(lattice, n):
+    x, y, n = float(lattice[0]), float(lattice[1]), float(n)
+    z = n - abs(x) - abs(y)
+    if z < 0:
+        x, y = (n - abs(y)) * sign(x), (n - abs(x)) * sign(y)
+    length = math.sqrt(x * x + y * y + z * z)
+    return [x / length, y / length, z / length]
+
+
+def lattice_near(v, n):
+    n = float(n)
+    total = abs(v[0]) + abs(v[1]) + abs(v[2])
+    x, y = v[0] / total * n, v[1] / total * n
+    if v[2] < 0:
+        x, y = (n - abs(y)) * sign(x), (n - abs(x)) * sign(y)
+    return [math.floor(x + 0.5), math.floor(y + 0.5)]
+
+
+def basis(k):
+    x, y, z = k
+    s = sign(z)
+    a = -1.0 / (s + z)
+    b = x * y * a
+    return [1.0 + s * (x * x * a), s * b, -(s * x)], [b, s + y * y * a, -y]
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+class Grids:
+    def __init__(self, head):
+        self.E, self.steps, self.guesses = head["E"], head["steps"], head["guesses"]
+        self.cell = self.E * (self.steps["cell"] / 16.0)
+        self.clip = self.E * (self.steps["clip"] / 1024.0)
+
+    def height_bits(self, f):
+        return self.steps["height"] + f
+
+    def slide_bits(self, small, f):
+        return min(max(self.steps["slide"] - (small // 32 - 4) + f, 0), self.height_bits(f))
+
+    def normal_steps(self, large, f):
+        return max(math.ceil(radius(large) * 256.0 * 2.0**f / self.steps["tilt"]), 2)
+
+    def bend(self, f):
+        return self.steps["bend"] / 256.0 * 2.0**-f
+
+    def spin_bits(self, sizes, bend, f):
+        if sizes[0] == sizes[1] and bend[0] == bend[1]:
+            return 0
+        ratio, step = radius(sizes[0]) / radius(sizes[1]), self.bend(f)
+        twist = abs(bend[0] * step / ratio - bend[1] * step * ratio)
+        by_height, by_shape = twist * 256.0 / self.steps["spin"], (ratio - 1.0 / ratio) * 32.0
+        wanted = 1.5707964 * max(by_height, by_shape) * 2.0**f
+        return next((bits for bits in range(1, 41) if 2.0**bits >= wanted), 40)
+
+    def border_steps(self, large):
+        return max(math.ceil(radius(large) * 4.442883 * 1024.0 / self.steps["clip"]), 4)
+
+    def coordinate(self, cell, low, bits):
+        return ((cell - BIAS) + low * 2.0**-bits) * self.cell
+
+
+# Section 6: records --------------------------------------------------------------------------
+
+
+def nearest(done, place):
+    best, least = None, math.inf
+    for other in reversed(done[-32:]):
+        d = [a - b for a, b in zip(other["center"], place)]
+        square = dot(d, d)
+        if square < least:
+            best, least = other, square
+    return best
+
+
+def normal_guess(near, place, steps):
+    d = [a - b for a, b in zip(place, near["center"])]
+    slopes = []
+    for axis, r, c in zip([near["i"], near["j"]], near["radii"], near["curvature"]):
+        slopes.append(2.0 * c * min(max(dot(d, axis), -2.0 * r), 2.0 * r))
+    v = [k - slopes[0] * i - slopes[1] * j for i, j, k in zip(near["i"], near["j"], near["k"])]
+    return lattice_near(v, steps)
+
+
+def bend_guess(near, radii, step):
+    guess = [math.floor(c * (r * r) / step + 0.5) for c, r in zip(near["curvature"], radii)]
+    return [min(max(g, -(1 << 40)), 1 << 40) for g in guess]
+
+
+def spin_guess(near, k, bits):
+    i0, j0 = basis(k)
+    x, y = dot(near["i"], i0), dot(near["i"], j0)
+    if y < 0:
+        x, y = -x, -y
+    low, high = 0, 1 << bits
+    while high - low > 1:
+        middle = (low + high) // 2
+        s, c = sin_cos(middle, 2 << bits)
+        low, high = (middle, high) if c * y - s * x >= 0 else (low, middle)
+    return low
+
+
+def read_clip(tape, grids, sizes, radii, curved):
+    count = grids.border_steps(sizes[0])
+    start = tape.number("ENDS")
+    sweep = tape.number("ENDS") + 1
+    require(start < count and sweep < count, "an end beyond a whole turn")
+    ends = []
+    for n in [start, (start + sweep) % count]:
+        s, c = sin_cos(n, count)
+        ends.append([radii[0] * c, radii[1] * s])
+    clip = {"alpha1": central(ends[0]), "alpha3": central(ends[1]), "p2": [0.0, 0.0], "rho": 0.0}
+    if curved:
+        control = [tape.near("CTRL", 0, 1 << 40) for _ in range(2)]
+        steps = abs(control[0]) + abs(control[1])
+        rho = tape.number("RHO ") + 1
+        require(0 < steps and rho <= steps, "a control point on the chord, or rho above 1")
+        clip["p2"] = [0.5 * (a + b) + n * grids.clip for a, b, n in zip(ends[0], ends[1], control)]
+        clip["rho"] = rho / steps
+    return clip
+
+
+def central(p):
+    angle = math.atan2(p[1], p[0])
+    angle = angle + 2 * math.pi if angle < 0 else angle
+    return angle if angle < 2 * math.pi else 0.0
+
+
+def read_splat(tape, grids, last, done):
+    kind = tape.kind()
+    fineness, turn = kind >> 4 & 3, kind >> 6
+    if fineness == 3:
+        more = tape.number("MORE")
+        require(more <= 9, "fineness")
+        fineness += more
+    require(turn < 3, "turn")
+    morton = last + tape.number("CELL")
+    require(morton < 1 << 84, "Morton code")
+    cell = [sum((morton >> (3 * n + axis) & 1) << n for n in range(28)) for axis in range(3)]
+    near = nearest(done, [grids.coordinate(c, 0, 0) for c in cell])
+    large = tape.near("SIZE", near["sizes"][0] if near else 0, 1023)
+    require(large >= 0, "radius code")
+    small = large
+    if kind & 2:
+        small = large - 1 - tape.number("SHAP")
+        require(small >= 0, "radius code")
+    sizes, radii = [large, small], [radius(large) * grids.E, radius(small) * grids.E]
+    slide, height = grids.slide_bits(small, fineness), grids.height_bits(fineness)
+    low = [tape.bits(slide) for _ in range(3)]
+    rise = tape.bits(height - slide)
+    coarse = [grids.coordinate(c, l, slide) for c, l in zip(cell, low)]
+    steps = grids.normal_steps(large, fineness)
+    guess = normal_guess(near, coarse, steps) if near else [0, 0]
+    k = normal_of([tape.near("NORM", g, steps) for g in guess], steps)
+    step = grids.bend(fineness) * grids.E
+    bend = [0, 0]
+    if kind & 1:
+        guess = bend_guess(near, radii, step) if near and grids.guesses & 1 else [0, 0]
+        bend = [tape.near("BEND", g, 1 << 40) for g in guess]
+        require(bend != [0, 0], "a quadric without curvature")
+    bits, spin = grids.spin_bits(sizes, bend, fineness), 0
+    if bits:
+        off, half = tape.near("SPIN", 0, 1 << (bits - 1)), 1 << (bits - 1)
+        require(off < half, "turn")
+        spin = ((spin_guess(near, k, bits) if near and grids.guesses & 2 else 0) + off) % (1 << bits)
+    sort = kind >> 2 & 3
+    counts = [[0, 0], [1, 0], [0, 1]][sort] if sort < 3 else [tape.number("MORE"), tape.number("MORE")]
+    require(max(counts) <= 1 << 16 and (sort < 3 or sum(counts) >= 2), "clip counts")
+    clips = [read_clip(tape, grids, sizes, radii, n >= counts[0]) for n in range(sum(counts))]
+    axis = (max(range(3), key=lambda n: (abs(k[n]), -n)) + turn) % 3
+    center = list(coarse)
+    center[axis] = grids.coordinate(cell[axis], low[axis] << (height - slide) | rise, height)
+    i0, j0 = basis(k)
+    s, c = sin_cos(spin, 2 << bits)
+    splat = {
+        "center": center,
+        "i": [c * a + s * b for a, b in zip(i0, j0)],
+        "j": [c * b - s * a for a, b in zip(i0, j0)],
+        "k": k,
+        "radii": radii,
+        "curvature": [b * step / (r * r) for b, r in zip(bend, radii)],
+        "clips": clips,
+        "color": [255, 255, 255],
+        "sizes": sizes,
+    }
+    return morton, splat, counts
+
+
+def paint(splats, planes):
+    count = len(splats)
+    require(len(planes) == 3 * count, "colours")
+    last = [0, 0, 0]
+    for n, splat in enumerate(splats):
+        last = [(value + planes[p * count + n]) % 256 for p, value in enumerate(last)]
+        splat["color"] = [(last[1] + last[0]) % 256, last[0], (last[2] + last[0]) % 256]
+
+
+def decode(data):
+    head, count = read_header(data)
+    chunks = read_chunks(data, count)
+    require(not ("KIND" in chunks and head["common"]), "common kind")
+    require(len(chunks.get("CELL", b"")) == head["splats"], "cells")
+    tape, grids = Tape(chunks, head["common"]), Grids(head)
+    morton, splats, clips, quadric = 0, [], [0, 0], False
+    for _ in range(head["splats"]):
+        morton, splat, counts = read_splat(tape, grids, morton, splats)
+        clips = [a + b for a, b in zip(clips, counts)]
+        quadric |= splat["curvature"] != [0.0, 0.0]
+        splats.append(splat)
+    tape.finish()
+    require(clips == [head["straight"], head["curved"]], "clip counts")
+    require(head["required"] == quadric * 1 + (sum(clips) > 0) * 2, "required features")
+    colors = head["optional"] & 1 != 0
+    require(colors and head["splats"] > 0 or "COLR" not in chunks, "colours that are not announced")
+    if colors:
+        paint(splats, chunks.get("COLR", b""))
+    for splat in splats:
+        del splat["sizes"]
+    return {
+        "version": 1,
+        "frame": {"origin": head["origin"], "exponent": head["exponent"]},
+        "diagonal": head["diagonal"],
+        "max_error": head["E"],
+        "fit": dict(zip(["rms", "p99", "max"], head["fit"])),
+        "has_colors": colors,
+        "splats": splats,
+    }
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    with open(sys.argv[1], "rb") as file:
+        data = file.read()
+    try:
+        asset = decode(data)
+    except Bad as fault:
+        sys.exit(f"{sys.argv[1]}: not a sound .qsplat: {fault}")
+    json.dump(asset, sys.stdout)
+    print()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+//! An order of points that does not depend on the order of the input.
+
+use glam::Vec3;
+
+/// Spreads the low 21 bits of a number so that two zero bits follow each.
+fn spread(mut x: u64) -> u64 {
+    x &= 0x1f_ffff;
+    x = (x | (x << 32)) & 0x001f_0000_0000_ffff;
+    x = (x | (x << 16)) & 0x001f_0000_ff00_00ff;
+    x = (x | (x << 8)) & 0x100f_00f0_0f00_f00f;
+    x = (x | (x << 4)) & 0x10c3_0c30_c30c_30c3;
+    (x | (x << 2)) & 0x1249_2492_4924_9249
+}
+
+/// The Morton code of a position in `[-1, 1]³`, 21 bits a coordinate.
+#[must_use]
+pub fn morton(p: Vec3) -> u64 {
+    let cell = |x: f32| ((f64::from(x) + 1.0) * f64::from(1 << 20)) as u64;
+    spread(cell(p.x).min(0x1f_ffff))
+        | spread(cell(p.y).min(0x1f_ffff)) << 1
+        | spread(cell(p.z).min(0x1f_ffff)) << 2
+}
+
+/// The order of positions along the Morton curve, ties broken by the exact coordinates.
+///
+/// Two positions compare equal only if they are the same bits (or `0` and `-0`).
+#[must_use]
+pub fn key(p: Vec3) -> (u64, [u32; 3]) {
+    // Adding zero turns -0 into 0.
+    (morton(p), (p + Vec3::ZERO).to_array().map(f32::to_bits))
+}
+
+/// A well-mixed number from an index (SplitMix64, Steele et al. 2014).
+#[must_use]
+pub fn mix(index: u64) -> u64 {
+    let mut z = index.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_visits_octants_one_by_one() {
+        let corner = |x: f32, y: f32, z: f32| morton(Vec3::new(x, y, z));
+        assert_eq!(corner(-1.0, -1.0, -1.0), 0);
+        assert!(corner(0.9, -0.9, -0.9) < corner(-0.9, 0.9, -0.9));
+        assert!(corner(0.9, 0.9, -0.9) < corner(-0.9, -0.9, 0.9));
+        assert_eq!(corner(1.0, 1.0, 1.0), (1 << 63) - 1);
+    }
+
+    #[test]
+    fn both_zeros_are_one_place() {
+        assert_eq!(key(Vec3::new(0.0, -0.0, 0.0)), key(Vec3::ZERO));
+    }
+}

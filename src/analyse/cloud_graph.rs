@@ -1,0 +1,185 @@
+//! Which points of a cloud are joined by its surface, and how far each stands for it.
+//!
+//! Two points are joined if their normals agree, the way between them runs along the surface
+//! and is not much longer than the local spacing; of those, the nearest in each eighth of the
+//! tangent plane, which holds the graph together (Yao 1982) however the points are strewn.
+//!
+//! A point's margin is the distance to the farthest corner of its Voronoi cell in its tangent
+//! plane: every place of the cell has this point within the margin. So the margins fill the
+//! surface wherever no empty disc is larger than `GAP` spacings; where one is, the surface
+//! has a hole.
+
+use glam::{DVec2, Vec3};
+use rayon::prelude::*;
+
+use super::nearest::{NEAREST, Nearest, listed};
+use super::surface::NONE;
+
+/// Normals of joined points agree by at least this cosine (60°).
+const AGREE: f32 = 0.5;
+
+/// The way between joined points leaves either tangent plane by less than this sine (45°).
+const ALONG: f32 = std::f32::consts::FRAC_1_SQRT_2;
+
+/// Joined points lie within this many spacings of either.
+const FAR: f32 = 4.0;
+
+/// An empty disc of a radius of more spacings than this is a hole. In an even random
+/// sampling of ten million points about one disc is that large.
+const GAP: f64 = 2.5;
+
+/// Sectors of the tangent plane.
+pub const SECTORS: usize = 8;
+
+/// Points of a cloud as the graph sees them, side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Sites<'a> {
+    /// Positions, model units.
+    pub positions: &'a [Vec3],
+    /// Unit normals.
+    pub normals: &'a [Vec3],
+    /// Local spacings, model units.
+    pub spacing: &'a [f32],
+    /// The nearest others of each.
+    pub nearest: &'a Nearest,
+}
+
+/// What one point is joined to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joined {
+    /// The nearest joined point of each sector of the tangent plane, or [`NONE`].
+    pub sectors: [u32; SECTORS],
+    /// How far the point stands for the surface, model units.
+    pub margin: f32,
+}
+
+impl Sites<'_> {
+    /// Whether the surface goes straight from one point to another.
+    #[must_use]
+    pub fn are_joined(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (a as usize, b as usize);
+        let way = self.positions[b] - self.positions[a];
+        let length = way.length();
+        let (na, nb) = (self.normals[a], self.normals[b]);
+        let near = length <= FAR * self.spacing[a].min(self.spacing[b]);
+        let slope = way.dot(na).abs().max(way.dot(nb).abs());
+        near && na.dot(nb) >= AGREE && slope <= ALONG * length
+    }
+
+    /// What each point is joined to, but for pairs that `cut` keeps apart.
+    #[must_use]
+    pub fn join(&self, cut: &(impl Fn(u32, u32) -> bool + Sync)) -> Vec<Joined> {
+        (0..self.positions.len() as u32).into_par_iter().map(|point| self.join_one(point, cut)).collect()
+    }
+
+    fn join_one(&self, point: u32, cut: &impl Fn(u32, u32) -> bool) -> Joined {
+        let n = point as usize;
+        let (right, up) = self.normals[n].any_orthonormal_pair();
+        let mut sectors = [NONE; SECTORS];
+        let mut flat = [DVec2::ZERO; NEAREST];
+        let mut count = 0;
+        let others = listed(&self.nearest[n]);
+        for other in others.filter(|&other| self.are_joined(point, other) && !cut(point, other)) {
+            let way = self.positions[other as usize] - self.positions[n];
+            let uv = DVec2::new(f64::from(way.dot(right)), f64::from(way.dot(up)));
+            let slot = &mut sectors[sector(uv)];
+            // They come nearest first.
+            if *slot == NONE {
+                *slot = other;
+            }
+            flat[count] = uv;
+            count += 1;
+        }
+        let spacing = f64::from(self.spacing[n]);
+        let margin = farthest_corner(&flat[..count], GAP * spacing).unwrap_or(spacing);
+        Joined { sectors, margin: margin as f32 }
+    }
+}
+
+/// The eighth of the plane a place lies in.
+fn sector(uv: DVec2) -> usize {
+    let steep = uv.y.abs() > uv.x.abs();
+    usize::from(uv.x < 0.0) + 2 * usize::from(uv.y < 0.0) + 4 * usize::from(steep)
+}
+
+/// Most corners a cell can have: a square cut by every neighbour.
+const CORNERS: usize = 4 + NEAREST;
+
+/// Distance of the farthest corner of the Voronoi cell of the origin among `sites`; corners
+/// farther than `reach` belong to holes and do not count. `None` where none is left.
+#[must_use]
+pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Option<f64> {
+    let mut cell = [DVec2::ZERO; CORNERS];
+    let mut count = 4;
+    for (corner, (x, y)) in cell.iter_mut().zip([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) {
+        *corner = DVec2::new(x, y) * reach;
+    }
+    for site in sites.iter().take(NEAREST) {
+        // Places nearer to the site lie beyond the bisector, on its far side.
+        let beyond = |p: DVec2| p.dot(*site) - 0.5 * site.length_squared();
+        let mut cut = [DVec2::ZERO; CORNERS];
+        let mut kept = 0;
+        for n in 0..count {
+            let (a, b) = (cell[n], cell[(n + 1) % count]);
+            let (fa, fb) = (beyond(a), beyond(b));
+            if fa <= 0.0 && kept < CORNERS {
+                cut[kept] = a;
+                kept += 1;
+            }
+            if (fa < 0.0) != (fb < 0.0) && kept < CORNERS {
+                cut[kept] = a.lerp(b, fa / (fa - fb));
+                kept += 1;
+            }
+        }
+        (cell, count) = (cut, kept);
+    }
+    let corners = cell[..count].iter().map(|corner| corner.length());
+    // Corners of the square itself, or on its sides, lie at least `reach` away.
+    corners.filter(|&distance| distance > 0.0 && distance < reach * (1.0 - 1e-9)).reduce(f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn corners_of_planted_cells() {
+        let square: Vec<DVec2> = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1)]
+            .map(|(x, y)| DVec2::new(x.into(), y.into()))
+            .to_vec();
+        let corner = |sites: &[DVec2]| farthest_corner(sites, 2.5);
+        assert!((corner(&square).unwrap() - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-12);
+        let hexagon: Vec<DVec2> =
+            (0..6).map(|n| DVec2::from_angle(f64::from(n) * std::f64::consts::FRAC_PI_3)).collect();
+        assert!((corner(&hexagon).unwrap() - 1.0 / 3.0_f64.sqrt()).abs() < 1e-12);
+        // At the border of a lattice only the corners on the inner side count.
+        assert!(
+            (corner(&[DVec2::X, DVec2::Y, -DVec2::X]).unwrap() - std::f64::consts::FRAC_1_SQRT_2).abs()
+                < 1e-12
+        );
+        assert_eq!(corner(&[DVec2::X, -DVec2::X]), None, "a line of points bounds no cell");
+        assert_eq!(corner(&[]), None);
+    }
+
+    #[test]
+    fn margins_fill_a_random_sampling() {
+        let value = |n: u64| (super::super::canonical::mix(n) >> 40) as f32 / (1 << 23) as f32 - 1.0;
+        let positions: Vec<Vec3> =
+            (0..3000).map(|n| Vec3::new(value(2 * n), value(2 * n + 1), 0.0)).collect();
+        let nearest = super::super::nearest::Search::new(&positions).unwrap().nearest();
+        let spacing = super::super::nearest::spacing(&positions, &nearest);
+        let normals = vec![Vec3::Z; positions.len()];
+        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let joined = sites.join(&|_, _| false);
+        for n in 0..4000 {
+            let place = 0.9 * Vec3::new(value(90_000 + 2 * n), value(90_001 + 2 * n), 0.0);
+            let covered = positions.iter().zip(&joined).any(|(p, j)| p.distance(place) <= j.margin * 1.0001);
+            assert!(covered, "{place}");
+        }
+        let mean = joined.iter().map(|j| f64::from(j.margin)).sum::<f64>() / 3000.0;
+        let mean_spacing = spacing.iter().map(|s| f64::from(*s)).sum::<f64>() / 3000.0;
+        assert!(mean < 1.2 * mean_spacing, "{mean} {mean_spacing}");
+    }
+}

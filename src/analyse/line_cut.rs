@@ -1,0 +1,320 @@
+//! Cuts a cloud open along feature lines, so that each sheet has borders of its own.
+//!
+//! Each sheet of each segment gives one directed border with the sheet on its left. Where
+//! borders meet they are linked as the sheet goes on from one to the next, round corners too;
+//! linked ends are one point, unlinked ends points of their own.
+
+use glam::{DVec3, Vec3};
+
+use super::cloud_graph::Sites;
+use super::line_network::Network;
+use super::line_sheets::{Sheet, Sheets};
+use super::surface::NONE;
+
+/// Borders are linked where their sheets' normals agree by at least this cosine (60°).
+const AGREE: f64 = 0.5;
+
+/// Points of a sheet that are joined to a segment's border whatever their distance, so that
+/// no border hangs loose.
+const JOINED: usize = 4;
+
+/// Points this many spacings from a line are joined to its border.
+const BESIDE: f64 = 1.5;
+
+/// How far beyond its ends, in shares of its length, a segment still parts sheets: a little
+/// where the line goes on, so that nothing slips between two segments; not quite to the end
+/// where it does not, since what lies there belongs to a third sheet.
+const PARTS: (f64, f64) = (0.25, -0.1);
+
+/// A border of one sheet along one segment.
+#[derive(Clone, Copy, Debug)]
+struct Border {
+    segment: u32,
+    sheet: usize,
+    /// The nodes it runs from and to.
+    ends: [u32; 2],
+    /// Its points at those nodes.
+    points: [u32; 2],
+}
+
+/// A cloud's feature lines with the sheets on all sides.
+#[derive(Clone, Debug)]
+pub struct LineCut {
+    network: Network,
+    sheets: Sheets,
+    borders: Vec<Border>,
+    /// For each segment, where its borders begin among all.
+    first_border: Vec<u32>,
+    /// Points on the lines, each of one sheet.
+    pub points: Vec<LinePoint>,
+}
+
+/// A point on a line, of one of the sheets there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePoint {
+    /// Its node: points of one node lie at one place.
+    pub node: u32,
+    /// Position, model units.
+    pub position: Vec3,
+    /// Unit normal of the sheet.
+    pub normal: Vec3,
+    /// A point of the cloud on the same sheet.
+    pub like: u32,
+}
+
+impl LineCut {
+    /// Finds the sheets along a network and their borders.
+    #[must_use]
+    pub fn new(network: Network, sites: &Sites) -> Self {
+        let sheets = Sheets::find(&network, sites);
+        let (mut borders, mut first_border) = (Vec::new(), Vec::new());
+        for (segment, found) in (0_u32..).zip(&sheets.of) {
+            first_border.push(borders.len() as u32);
+            for (sheet, Sheet { inward, normal, .. }) in found.iter().enumerate() {
+                let [a, b] = network.segments[segment as usize];
+                // With the sheet on the left, normal × along looks into it.
+                let forward = inward.cross(*normal).dot(network.along(segment)) > 0.0;
+                let ends = if forward { [a, b] } else { [b, a] };
+                borders.push(Border { segment, sheet, ends, points: [NONE; 2] });
+            }
+        }
+        let mut cut = Self { network, sheets, borders, first_border, points: Vec::new() };
+        cut.link();
+        cut
+    }
+
+    fn sheet(&self, border: &Border) -> &Sheet {
+        &self.sheets.of[border.segment as usize][border.sheet]
+    }
+
+    /// The direction a border runs in.
+    fn direction(&self, border: &Border) -> DVec3 {
+        let along = self.network.along(border.segment);
+        if border.ends[0] < border.ends[1] { along } else { -along }
+    }
+
+    /// Links borders at their ends and gives all ends points.
+    fn link(&mut self) {
+        let mut ends: Vec<(u32, bool, u32)> = Vec::with_capacity(2 * self.borders.len());
+        for (border, index) in self.borders.iter().zip(0_u32..) {
+            ends.extend([(border.ends[0], true, index), (border.ends[1], false, index)]);
+        }
+        ends.sort_unstable();
+        for at_node in ends.chunk_by(|a, b| a.0 == b.0) {
+            let split = at_node.partition_point(|end| !end.1);
+            let (arriving, leaving) = at_node.split_at(split);
+            let mut pairs = Vec::new();
+            for arrive in arriving {
+                let turns = leaving
+                    .iter()
+                    .filter_map(|leave| Some((self.turn(arrive.2, leave.2)?, arrive.2, leave.2)));
+                pairs.extend(turns);
+            }
+            pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+            for (_, arrive, leave) in pairs {
+                if self.borders[arrive as usize].points[1] == NONE
+                    && self.borders[leave as usize].points[0] == NONE
+                {
+                    let point = self.add_point(at_node[0].0, &[arrive, leave]);
+                    self.borders[arrive as usize].points[1] = point;
+                    self.borders[leave as usize].points[0] = point;
+                }
+            }
+        }
+        for index in 0..self.borders.len() as u32 {
+            for end in 0..2 {
+                if self.borders[index as usize].points[end] == NONE {
+                    let point = self.add_point(self.borders[index as usize].ends[end], &[index]);
+                    self.borders[index as usize].points[end] = point;
+                }
+            }
+        }
+    }
+
+    fn add_point(&mut self, node: u32, borders: &[u32]) -> u32 {
+        let sheets = || borders.iter().map(|&border| self.sheet(&self.borders[border as usize]));
+        let normal: DVec3 = sheets().map(|sheet| sheet.normal).sum();
+        let like = sheets().find_map(|sheet| sheet.points.first().copied()).unwrap_or(0);
+        let position = self.network.nodes[node as usize];
+        let normal = normal.normalize_or(DVec3::Z).as_vec3();
+        self.points.push(LinePoint { node, position, normal, like });
+        self.points.len() as u32 - 1
+    }
+
+    /// How far the sheet on the left turns, clockwise, from a border that arrives at a node
+    /// to one that leaves it; `None` where the sheets' normals disagree.
+    ///
+    /// Of all borders that leave, the sheet's next one turns least. A border that leaves
+    /// along the line it came by turns all the way round.
+    fn turn(&self, arrive: u32, leave: u32) -> Option<f64> {
+        let (arrive, leave) = (&self.borders[arrive as usize], &self.borders[leave as usize]);
+        let (from, to) = (self.sheet(arrive).normal, self.sheet(leave).normal);
+        if from.dot(to) < AGREE {
+            return None;
+        }
+        let normal = (from + to).normalize();
+        let back = (-self.direction(arrive)).reject_from_normalized(normal);
+        let onward = self.direction(leave).reject_from_normalized(normal);
+        let left = libm::atan2(back.cross(onward).dot(normal), back.dot(onward));
+        // Rounding must not make a full turn of none, nor none of a full turn.
+        let none = arrive.segment == leave.segment || left.abs() < 1e-6;
+        Some(if none { std::f64::consts::TAU } else { (-left).rem_euclid(std::f64::consts::TAU) })
+    }
+
+    /// Whether the straight way between two points of the cloud crosses from sheet to sheet.
+    #[must_use]
+    pub fn parts(&self, sites: &Sites, a: u32, b: u32) -> bool {
+        let beside = |n: u32| self.sheets.beside[n as usize].as_ref().map(|beside| beside.segment);
+        let (near_a, near_b) = (beside(a), beside(b));
+        if near_a.is_none() && near_b.is_none() {
+            return false;
+        }
+        let points = [a, b].map(|n| sites.positions[n as usize].as_dvec3());
+        let own = [near_a, near_b.filter(|_| near_a != near_b)];
+        own.into_iter().flatten().any(|segment| {
+            let nodes = self.network.segments[segment as usize];
+            let around = nodes.into_iter().flat_map(|node| self.network.at_node.row(node).iter().copied());
+            std::iter::once(segment)
+                .chain(around.filter(|&other| other != segment))
+                .any(|segment| self.segment_parts(segment, points))
+        })
+    }
+
+    fn segment_parts(&self, segment: u32, [p, q]: [DVec3; 2]) -> bool {
+        let side = |point: DVec3| self.sheets.toward(&self.network, segment, point);
+        if self.sheets.of[segment as usize].len() < 2 || side(p) == side(q) {
+            return false;
+        }
+        let [a, b] = self.network.ends(segment);
+        let (along, length) = (self.network.along(segment), a.distance(b));
+        let place = |point: DVec3| {
+            let along = (point - a).dot(along);
+            (along / length, (point - a).length_squared() - along * along)
+        };
+        let ((tp, rp), (tq, rq)) = (place(p), place(q));
+        let (rp, rq) = (rp.max(0.0).sqrt(), rq.max(0.0).sqrt());
+        // Where the way passes the line: nearer to the place of the nearer point.
+        let at = if rp + rq > 0.0 { (tp * rq + tq * rp) / (rp + rq) } else { 0.5 * (tp + tq) };
+        let beyond = |end: usize| {
+            let node = self.network.segments[segment as usize][end];
+            if self.network.beyond(segment, node) == NONE { PARTS.1 } else { PARTS.0 }
+        };
+        at > -beyond(0) && at < 1.0 + beyond(1)
+    }
+
+    /// The border of its own sheet that runs beside a point of the cloud.
+    fn border_beside(&self, sites: &Sites, point: u32) -> Option<&Border> {
+        let beside = self.sheets.beside[point as usize].as_ref()?;
+        let near = beside.offset.length() <= BESIDE * f64::from(sites.spacing[point as usize]);
+        let position = sites.positions[point as usize].as_dvec3();
+        let sheet = self.sheets.toward(&self.network, beside.segment, position)?;
+        let border = self.first_border[beside.segment as usize] as usize + sheet;
+        (near && !beside.at_end).then(|| &self.borders[border])
+    }
+
+    /// Pairs of a point on a line and a point of the cloud that the surface joins.
+    #[must_use]
+    pub fn joins(&self, sites: &Sites) -> Vec<(u32, u32)> {
+        let mut pairs = Vec::new();
+        for border in &self.borders {
+            let points = &self.sheet(border).points;
+            let nearest = points.iter().take(JOINED);
+            pairs.extend(nearest.flat_map(|&point| border.points.map(|end| (end, point))));
+        }
+        for point in 0..sites.positions.len() as u32 {
+            if let Some(border) = self.border_beside(sites, point) {
+                pairs.extend(border.points.map(|end| (end, point)));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// Pairs of points on lines that follow each other, the sheet on the left.
+    pub fn sides(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.borders.iter().map(|border| (border.points[0], border.points[1]))
+    }
+
+    /// How far a point beside a line must reach to fill the surface up to it, model units; 0
+    /// for other points.
+    #[must_use]
+    pub fn reach(&self, sites: &Sites, point: u32) -> f32 {
+        let here = sites.positions[point as usize];
+        self.border_beside(sites, point).map_or(0.0, |border| {
+            let ends = border.ends.map(|node| self.network.nodes[node as usize].distance(here));
+            ends[0].max(ends[1])
+        })
+    }
+
+    /// How many segments some sheet ends at, and their length, model units.
+    #[must_use]
+    pub fn found(&self) -> (usize, f64) {
+        let found = (0_u32..).zip(&self.sheets.of).filter(|(_, sheets)| !sheets.is_empty());
+        let lengths = found.map(|(segment, _)| {
+            let [a, b] = self.network.ends(segment);
+            a.distance(b)
+        });
+        lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::analyse::canonical::mix;
+    use crate::analyse::nearest::{Nearest, Search, spacing};
+
+    /// Points strewn over the faces of the cube `[-1, 1]³ / 2`, with their normals.
+    fn cube(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
+        let value = |n: u64| (mix(n) >> 40) as f32 / (1 << 24) as f32 - 0.5;
+        (0..6 * each)
+            .map(|n| {
+                let (axis, side) = ((n % 3) as usize, if n % 6 < 3 { 0.5 } else { -0.5 });
+                let mut point = Vec3::new(value(3 * n), value(3 * n + 1), value(3 * n + 2));
+                point[axis] = side;
+                (point, 2.0 * side * Vec3::AXES[axis])
+            })
+            .unzip()
+    }
+
+    fn edges() -> Vec<Vec<DVec3>> {
+        let corner = |n: usize| DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64) - 0.5;
+        let ends = (0..8).flat_map(|n| [1, 2, 4].map(|bit| (n, n | bit)));
+        ends.filter(|(a, b)| a != b).map(|(a, b)| vec![corner(a), corner(b)]).collect()
+    }
+
+    fn lay(points: &[Vec3]) -> (Search, Nearest, Vec<f32>) {
+        let search = Search::new(points).unwrap();
+        let nearest = search.nearest();
+        let spacing = spacing(points, &nearest);
+        (search, nearest, spacing)
+    }
+
+    #[test]
+    fn a_cube_falls_into_six_loops() {
+        let (positions, normals) = cube(1500);
+        let (search, nearest, spacing) = lay(&positions);
+        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let network = Network::new(&edges(), &search, &positions, &spacing);
+        let (nodes, segments) = (network.nodes.len(), network.segments.len());
+        assert_eq!(segments, nodes - 8 + 12, "twelve lines of one segment more than inner nodes");
+        let cut = LineCut::new(network, &sites);
+        for border in &cut.borders {
+            let sheet = cut.sheet(border);
+            let [a, b] = border.points.map(|point| cut.points[point as usize].position.as_dvec3());
+            assert!((sheet.normal.dot(a) - 0.5).abs() < 1e-6, "the sheet's outside: {sheet:?}");
+            let left = sheet.normal.cross(b - a).normalize();
+            assert!(left.distance(sheet.inward) < 1e-6 && left.dot(-0.5 * (a + b)) > 0.4);
+        }
+        // As many borders end at a point as begin there: one.
+        let mut ends: Vec<(u32, u32)> = cut.sides().collect();
+        ends.sort_unstable();
+        assert!(ends.iter().enumerate().all(|(n, end)| end.0 == n as u32));
+        ends.sort_unstable_by_key(|end| end.1);
+        assert!(ends.iter().enumerate().all(|(n, end)| end.1 == n as u32));
+        assert_eq!(cut.points.len(), 2 * (nodes - 8) + 24);
+    }
+}

@@ -1,0 +1,142 @@
+//! Feature lines as a network of short segments, resampled at a cloud's spacing.
+
+use glam::{DVec3, Vec3};
+
+use super::canonical;
+use super::nearest::Search;
+use super::surface::{NONE, Rows};
+
+/// Of vertices nearer to each other than this share of the spacing one is enough.
+const DENSE: f64 = 0.5;
+
+/// A line that turns by more than this at a vertex (cosine of 15°) keeps it.
+const TURN: f64 = 0.966;
+
+/// A line goes smoothly on through a node where two segments meet within this cosine (30°).
+const SMOOTH: f64 = 0.866;
+
+/// A line farther than this many spacings from the cloud touches no surface.
+const OFF: f64 = 3.0;
+
+/// Segments are halved no more than so often: a million samples on one.
+const HALVINGS: u32 = 20;
+
+/// No network has more segments.
+const MOST_SEGMENTS: usize = 4_000_000;
+
+/// Nodes and the segments between them, in an order that does not depend on that of the lines.
+#[derive(Clone, Debug, Default)]
+pub struct Network {
+    /// Where lines begin, end, meet, or were sampled, model units.
+    pub nodes: Vec<Vec3>,
+    /// Pairs of nodes, the lesser first, ascending.
+    pub segments: Vec<[u32; 2]>,
+    /// For each node, its segments.
+    pub at_node: Rows,
+}
+
+impl Network {
+    /// Resamples lines (model units) where they pass near a cloud with local `spacing`.
+    #[must_use]
+    pub fn new(lines: &[Vec<DVec3>], search: &Search, positions: &[Vec3], spacing: &[f32]) -> Self {
+        let near = |place: DVec3| {
+            let point = search.closest(place)? as usize;
+            let spacing = f64::from(spacing[point]);
+            (spacing > 0.0).then(|| (positions[point].as_dvec3().distance(place), spacing))
+        };
+        let mut pieces = Vec::new();
+        for line in lines {
+            for side in thinned(line, &near).windows(2) {
+                halve(side[0], side[1], HALVINGS, &near, &mut pieces);
+            }
+        }
+        Self::of_pieces(&pieces)
+    }
+
+    fn of_pieces(pieces: &[[Vec3; 2]]) -> Self {
+        let mut nodes: Vec<Vec3> = pieces.as_flattened().to_vec();
+        nodes.sort_unstable_by_key(|&node| canonical::key(node));
+        nodes.dedup();
+        let index = |node: Vec3| {
+            let key = canonical::key(node);
+            nodes.partition_point(|&other| canonical::key(other) < key) as u32
+        };
+        let mut segments: Vec<[u32; 2]> = pieces
+            .iter()
+            .map(|ends| ends.map(index))
+            .filter(|[a, b]| a != b)
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        segments.sort_unstable();
+        segments.dedup();
+        let at_node =
+            segments.iter().zip(0_u32..).flat_map(|(ends, segment)| ends.map(|end| (end, segment))).collect();
+        Self { at_node: Rows::from_pairs(nodes.len(), at_node), nodes, segments }
+    }
+
+    /// A segment's ends.
+    #[must_use]
+    pub fn ends(&self, segment: u32) -> [DVec3; 2] {
+        self.segments[segment as usize].map(|node| self.nodes[node as usize].as_dvec3())
+    }
+
+    /// Unit vector from a segment's first end to its second.
+    #[must_use]
+    pub fn along(&self, segment: u32) -> DVec3 {
+        let [a, b] = self.ends(segment);
+        (b - a).normalize_or(DVec3::X)
+    }
+
+    /// The segment that carries another smoothly on beyond one of its nodes; or [`NONE`].
+    #[must_use]
+    pub fn beyond(&self, segment: u32, node: u32) -> u32 {
+        let &[a, b] = self.at_node.row(node) else { return NONE };
+        let other = if a == segment { b } else { a };
+        let outward = |segment: u32| {
+            let along = self.along(segment);
+            if self.segments[segment as usize][0] == node { along } else { -along }
+        };
+        if outward(segment).dot(outward(other)) < -SMOOTH { other } else { NONE }
+    }
+}
+
+/// A line without vertices that lie closer together than a cloud's spacing can show.
+fn thinned(line: &[DVec3], near: &impl Fn(DVec3) -> Option<(f64, f64)>) -> Vec<DVec3> {
+    let (Some(&first), Some(&last)) = (line.first(), line.last()) else { return Vec::new() };
+    let mut kept = vec![first];
+    let mut before = first;
+    for pair in line.windows(2).skip(1) {
+        let (here, next) = (pair[0], pair[1]);
+        let from = kept[kept.len() - 1];
+        let turn = (here - before).normalize_or_zero().dot((next - here).normalize_or_zero());
+        let dense = near(here).is_some_and(|(_, spacing)| from.distance(here) < DENSE * spacing);
+        if here != from && (turn < TURN || !dense) {
+            kept.push(here);
+        }
+        before = here;
+    }
+    kept.push(last);
+    kept
+}
+
+/// Halves a segment until it is no longer than the spacing; parts far from the cloud are
+/// left out.
+fn halve(
+    a: DVec3,
+    b: DVec3,
+    halvings: u32,
+    near: &impl Fn(DVec3) -> Option<(f64, f64)>,
+    pieces: &mut Vec<[Vec3; 2]>,
+) {
+    let (middle, length) = (0.5 * (a + b), a.distance(b));
+    let Some((distance, spacing)) = near(middle) else { return };
+    if !(length > 0.0 && distance <= 0.5 * length + OFF * spacing) || pieces.len() >= MOST_SEGMENTS {
+        return;
+    }
+    if length <= spacing || halvings == 0 {
+        pieces.push([a.as_vec3() + Vec3::ZERO, b.as_vec3() + Vec3::ZERO]);
+        return;
+    }
+    halve(a, middle, halvings - 1, near, pieces);
+    halve(middle, b, halvings - 1, near, pieces);
+}

@@ -1,0 +1,205 @@
+//! The sheets of a cloud that meet at feature lines.
+//!
+//! Around each segment of a line the points fall, seen along it, into clusters of direction:
+//! one for each sheet of the surface that ends there.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::cloud_graph::Sites;
+use super::line_network::Network;
+use super::segment_grid::{SegmentGrid, nearest_on};
+use super::surface::{NONE, Rows};
+
+/// Points within this many spacings of a line show its sheets.
+const REACH: f64 = 3.0;
+
+/// Points nearer than this many spacings to a line have no direction from it to speak of.
+const TOO_NEAR: f64 = 0.3;
+
+/// Segments on either side, along the line, whose points vote too: four to eight spacings,
+/// so that the wedge of a sheet that is left beside a corner still holds a few points.
+const WINDOW: usize = 8;
+
+/// Segments that turn away from the one in question by more than this (cosine of 30°) do not
+/// vote.
+const ALIGNED: f64 = 0.866;
+
+/// Directions farther apart than this (25°) belong to different sheets.
+const SEPARATE: f64 = 0.436;
+
+/// Directions spread over more than this (100°) are no sheet but a blob, or a surface that
+/// the line floats above.
+const SPREAD: f64 = 1.745;
+
+/// Fewer points than this are no sheet.
+const FEWEST: usize = 3;
+
+/// A sheet that ends at a segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// Unit vector from the line into the sheet, perpendicular to the line.
+    pub inward: DVec3,
+    /// Unit normal of the sheet at the line, perpendicular to both.
+    pub normal: DVec3,
+    /// Points of the sheet, nearest to the middle of the segment first.
+    pub points: Vec<u32>,
+}
+
+/// A point's nearest place on the lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beside {
+    /// The segment.
+    pub segment: u32,
+    /// From the place to the point.
+    pub offset: DVec3,
+    /// Whether the place is where a line ends or turns sharply.
+    pub at_end: bool,
+}
+
+/// What lies beside the lines.
+#[derive(Clone, Debug, Default)]
+pub struct Sheets {
+    /// For each segment its sheets, in the order of their angle.
+    pub of: Vec<Vec<Sheet>>,
+    /// For each point of the cloud near a line, where.
+    pub beside: Vec<Option<Beside>>,
+}
+
+impl Sheets {
+    /// Finds the sheets that meet at each segment of a network.
+    #[must_use]
+    pub fn find(network: &Network, sites: &Sites) -> Self {
+        let ends = (0..network.segments.len() as u32).map(|segment| network.ends(segment)).collect();
+        let grid = SegmentGrid::new(ends);
+        let beside: Vec<Option<Beside>> = (0..sites.positions.len())
+            .into_par_iter()
+            .map(|n| {
+                let spacing = f64::from(sites.spacing[n]);
+                let point = sites.positions[n].as_dvec3();
+                let near = grid.nearest(point, REACH * spacing)?;
+                Some(beside(network, near.segment, point))
+            })
+            .collect();
+        let votes = |(n, beside): (usize, &Option<Beside>)| {
+            let beside = beside.as_ref().filter(|beside| !beside.at_end)?;
+            let far = beside.offset.length() > TOO_NEAR * f64::from(sites.spacing[n]);
+            far.then_some((beside.segment, n as u32))
+        };
+        let voters =
+            Rows::from_pairs(network.segments.len(), beside.iter().enumerate().filter_map(votes).collect());
+        let of = (0..network.segments.len() as u32)
+            .into_par_iter()
+            .map(|segment| sheets(network, sites, &beside, &voters, segment))
+            .collect();
+        Self { of, beside }
+    }
+
+    /// Which sheet of a segment lies in a direction from it; the nearest by angle.
+    #[must_use]
+    pub fn toward(&self, network: &Network, segment: u32, point: DVec3) -> Option<usize> {
+        let along = network.along(segment);
+        let [a, _] = network.ends(segment);
+        let offset = (point - a).reject_from_normalized(along).normalize_or_zero();
+        let sheets = self.of[segment as usize].iter().enumerate();
+        let nearest = sheets.max_by(|a, b| {
+            let (da, db) = (a.1.inward.dot(offset), b.1.inward.dot(offset));
+            da.total_cmp(&db).then(b.0.cmp(&a.0))
+        });
+        nearest.map(|(index, _)| index)
+    }
+}
+
+fn beside(network: &Network, segment: u32, point: DVec3) -> Beside {
+    let [a, b] = network.ends(segment);
+    let place = nearest_on(a, b, point);
+    let nodes = network.segments[segment as usize];
+    let ends_at = |end: DVec3, node: u32| place == end && network.beyond(segment, node) == NONE;
+    Beside { segment, offset: point - place, at_end: ends_at(a, nodes[0]) || ends_at(b, nodes[1]) }
+}
+
+/// The segments that carry one on in both directions, itself first.
+fn window(network: &Network, segment: u32) -> Vec<u32> {
+    let along = network.along(segment);
+    let mut found = vec![segment];
+    for start in network.segments[segment as usize] {
+        let (mut at, mut node) = (segment, start);
+        for _ in 0..WINDOW {
+            at = network.beyond(at, node);
+            let aligned = |at: u32| network.along(at).dot(along).abs() >= ALIGNED;
+            if at == NONE || found.contains(&at) || !aligned(at) {
+                break;
+            }
+            found.push(at);
+            let [a, b] = network.segments[at as usize];
+            node = if a == node { b } else { a };
+        }
+    }
+    found
+}
+
+/// Groups the points around a segment by their direction from it.
+fn sheets(
+    network: &Network,
+    sites: &Sites,
+    beside: &[Option<Beside>],
+    voters: &Rows,
+    segment: u32,
+) -> Vec<Sheet> {
+    let along = network.along(segment);
+    let (right, up) = along.any_orthonormal_pair();
+    let mut votes: Vec<(f64, u32)> = window(network, segment)
+        .into_iter()
+        .flat_map(|near| voters.row(near).iter().copied())
+        .filter_map(|point| {
+            let offset = beside[point as usize].as_ref()?.offset;
+            Some((libm::atan2(offset.dot(up), offset.dot(right)), point))
+        })
+        .collect();
+    votes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let clusters = clusters(&votes);
+    clusters.into_iter().filter_map(|points| sheet(network, sites, beside, segment, points)).collect()
+}
+
+/// Splits points sorted by angle where two neighbours lie far apart.
+fn clusters(votes: &[(f64, u32)]) -> Vec<Vec<u32>> {
+    let count = votes.len();
+    let gap = |n: usize| {
+        let step = votes[(n + 1) % count].0 - votes[n].0;
+        if n + 1 == count { step + std::f64::consts::TAU } else { step }
+    };
+    let breaks: Vec<usize> = (0..count).filter(|&n| gap(n) > SEPARATE).collect();
+    let mut found = Vec::new();
+    for (k, &end) in breaks.iter().enumerate() {
+        // From behind the break before this one, round the circle, to this one.
+        let start = breaks[(k + breaks.len() - 1) % breaks.len()] + 1;
+        let length = (end + count - start) % count + 1;
+        let spread: f64 = (0..length - 1).map(|n| gap((start + n) % count)).sum();
+        if length >= FEWEST && spread <= SPREAD {
+            found.push((0..length).map(|n| votes[(start + n) % count].1).collect());
+        }
+    }
+    found
+}
+
+/// The sheet that some points show.
+fn sheet(
+    network: &Network,
+    sites: &Sites,
+    beside: &[Option<Beside>],
+    segment: u32,
+    mut points: Vec<u32>,
+) -> Option<Sheet> {
+    let along = network.along(segment);
+    let [a, b] = network.ends(segment);
+    let middle = 0.5 * (a + b);
+    let distance = |point: u32| sites.positions[point as usize].as_dvec3().distance_squared(middle);
+    points.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b)));
+    let directions = points.iter().filter_map(|&point| beside[point as usize].as_ref());
+    let sum: DVec3 = directions.map(|b| b.offset.reject_from_normalized(along).normalize_or_zero()).sum();
+    let inward = sum.try_normalize()?;
+    let mean: Vec3 = points.iter().map(|&point| sites.normals[point as usize]).sum();
+    let normal = along.cross(inward).try_normalize()?;
+    let normal = if normal.dot(mean.as_dvec3()) < 0.0 { -normal } else { normal };
+    Some(Sheet { inward, normal, points })
+}

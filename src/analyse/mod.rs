@@ -1,0 +1,26 @@
+//! What the input's surface is: welded, cut along its feature lines, with neighbours and normals.
+//!
+//! Both kinds of input end as one [`surface::Surface`], so that nothing below asks which it was.
+
+pub mod canonical;
+pub mod chains;
+pub mod cloud_graph;
+pub mod cloud_normals;
+pub mod cloud_surface;
+pub mod creases;
+pub mod distinct;
+pub mod edges;
+pub mod given_lines;
+pub mod line_cut;
+pub mod line_network;
+pub mod line_sheets;
+pub mod mesh_surface;
+pub mod nearest;
+pub mod orient;
+pub mod outliers;
+pub mod refine;
+pub mod segment_grid;
+pub mod sets;
+pub mod split;
+pub mod surface;
+pub mod weld;

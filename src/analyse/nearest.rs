@@ -1,0 +1,154 @@
+//! The nearest neighbours of every point of a cloud.
+
+use std::num::NonZeroUsize;
+
+use glam::{DVec3, Vec3};
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use rayon::prelude::*;
+
+use super::surface::NONE;
+use crate::error::{Error, Result};
+
+/// Neighbours kept of a point: about two rings of an even sampling.
+pub const NEAREST: usize = 16;
+
+/// Of neighbours at distances that differ by less than this share, none or all are kept: on
+/// a lattice the farthest kept would be a matter of chance otherwise.
+const TIE: f64 = 1e-5;
+
+/// Ties are kept, in whatever choice the search made, where fewer would remain otherwise.
+const FEWEST: usize = 8;
+
+/// For each point its nearest others, nearest first, filled up with [`NONE`].
+pub type Nearest = Vec<[u32; NEAREST]>;
+
+/// Finds what lies near a place.
+pub struct Search {
+    tree: ImmutableKdTree<f32, 3>,
+    points: Vec<[f32; 3]>,
+}
+
+impl Search {
+    /// A search over distinct points (model units).
+    ///
+    /// # Errors
+    /// [`Error::Internal`] should the search tree not take the points.
+    pub fn new(positions: &[Vec3]) -> Result<Self> {
+        let points: Vec<[f32; 3]> = positions.iter().map(|p| p.to_array()).collect();
+        let tree = ImmutableKdTree::new_from_slice(&points).map_err(|error| {
+            Error::Internal(format!("the neighbour search refused the points: {error:?}"))
+        })?;
+        Ok(Self { tree, points })
+    }
+
+    /// The nearest others of each point.
+    #[must_use]
+    pub fn nearest(&self) -> Nearest {
+        // Itself, those kept, and one more that shows whether the last is tied.
+        let asked = NonZeroUsize::MIN.saturating_add(NEAREST + 1);
+        self.points
+            .par_iter()
+            .enumerate()
+            .map(|(index, point)| {
+                let found = self.tree.query(point).nearest_n::<SquaredEuclidean<f32>>(asked).execute();
+                chosen(&self.points, index as u32, found.iter().map(|found| found.item))
+            })
+            .collect()
+    }
+
+    /// The point nearest to a place; `None` only where there are no points.
+    #[must_use]
+    pub fn closest(&self, place: DVec3) -> Option<u32> {
+        let place = place.as_vec3().to_array();
+        let one = NonZeroUsize::MIN;
+        self.tree
+            .query(&place)
+            .nearest_n::<SquaredEuclidean<f32>>(one)
+            .execute()
+            .first()
+            .map(|found| found.item)
+    }
+}
+
+/// The others among those found, nearest first, without the last ones if they are tied.
+fn chosen(positions: &[[f32; 3]], index: u32, found: impl Iterator<Item = u32>) -> [u32; NEAREST] {
+    let at = |n: u32| Vec3::from(positions[n as usize]).as_dvec3();
+    let here: DVec3 = at(index);
+    let mut others = [(f64::INFINITY, NONE); NEAREST + 2];
+    let mut count = 0;
+    for other in found.filter(|&other| other != index).take(NEAREST + 2) {
+        others[count] = (at(other).distance_squared(here), other);
+        count += 1;
+    }
+    others[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    if count > NEAREST {
+        let limit = others[NEAREST].0 * (1.0 - TIE);
+        let untied = others[..NEAREST].partition_point(|other| other.0 < limit);
+        count = if untied < FEWEST { NEAREST } else { untied };
+    }
+    let mut row = [NONE; NEAREST];
+    for (slot, other) in row.iter_mut().zip(&others[..count]) {
+        *slot = other.1;
+    }
+    row
+}
+
+/// The neighbours in a row of [`Nearest`].
+pub fn listed(row: &[u32]) -> impl Iterator<Item = u32> + Clone + '_ {
+    row.iter().copied().take_while(|&other| other != NONE)
+}
+
+/// Neighbours whose mean distance is a point's spacing: the first ring of an even sampling.
+const RING: usize = 6;
+
+/// Mean distance of each point's nearest few neighbours, model units; 0 for a lone point.
+#[must_use]
+pub fn spacing(positions: &[Vec3], nearest: &Nearest) -> Vec<f32> {
+    let mean = |(index, row): (usize, &[u32; NEAREST])| {
+        let here = positions[index].as_dvec3();
+        let ring = listed(row).take(RING);
+        let count = ring.clone().count().max(1);
+        (ring.map(|other| positions[other as usize].as_dvec3().distance(here)).sum::<f64>() / count as f64)
+            as f32
+    };
+    nearest.par_iter().enumerate().map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn neighbours_agree_with_brute_force_and_ties_go_together() {
+        let value = |n: u64| (super::super::canonical::mix(n) >> 40) as f32 / (1 << 23) as f32 - 1.0;
+        let random: Vec<Vec3> =
+            (0..700).map(|n| Vec3::new(value(3 * n), value(3 * n + 1), value(3 * n + 2))).collect();
+        let lattice: Vec<Vec3> =
+            (0..900).map(|n| Vec3::new((n % 30) as f32, (n / 30) as f32, 0.0) / 30.0).collect();
+        let line: Vec<Vec3> = (0..5).map(|n| Vec3::X * n as f32 / 5.0).collect();
+        for points in [random, lattice, line, vec![Vec3::ZERO]] {
+            let found = Search::new(&points).unwrap().nearest();
+            for (index, row) in found.iter().enumerate() {
+                let distance = |n: u32| points[n as usize].as_dvec3().distance(points[index].as_dvec3());
+                let listed: Vec<u32> = listed(row).collect();
+                let farthest = listed.iter().map(|&n| distance(n)).fold(0.0, f64::max);
+                // Whatever is not listed is no nearer than whatever is.
+                let mut missing =
+                    (0..points.len() as u32).filter(|n| *n != index as u32 && !listed.contains(n));
+                assert!(missing.all(|n| distance(n) >= farthest));
+                assert!(listed.len() >= FEWEST.min(points.len() - 1));
+            }
+        }
+    }
+
+    #[test]
+    fn spacing_is_the_mean_over_the_first_ring() {
+        let lattice: Vec<Vec3> =
+            (0..900).map(|n| Vec3::new((n % 30) as f32, (n / 30) as f32, 0.0) / 64.0).collect();
+        let spacing = spacing(&lattice, &Search::new(&lattice).unwrap().nearest());
+        let expected = (4.0 + 2.0 * std::f32::consts::SQRT_2) / 6.0 / 64.0;
+        assert!((spacing[15 * 30 + 15] - expected).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,208 @@
+//! Signs of normals that agree along the surface (Hoppe et al. 1992, 3.3).
+//!
+//! A minimum spanning tree of the neighbour graph, with weights `1 - |n·n|`, carries the sign
+//! from point to point where the normals turn least. Only the signs along it matter, so the
+//! tree is never stored: sets that merge remember each member's sign against its root.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::nearest::{NEAREST, Nearest, listed};
+
+/// Edges of the graph taken from each point, its nearest: enough to hold together what
+/// belongs together, few enough to sort fast.
+const TAKEN: usize = 8;
+
+/// A component whose normals look outward at its outermost points by less than this, of 1
+/// for a closed smooth surface, is a patch: it is turned away from the model's middle.
+const OUTERMOST: f64 = 0.3;
+
+/// The directions in which outermost points are looked for: those of a cube's neighbours.
+const DIRECTIONS: usize = 26;
+
+/// Sets of points whose signs are tied together.
+struct SignedSets {
+    parent: Vec<u32>,
+    /// Whether a point's normal must be turned to agree with its parent's.
+    turned: Vec<bool>,
+}
+
+impl SignedSets {
+    fn new(len: usize) -> Self {
+        Self { parent: (0..len as u32).collect(), turned: vec![false; len] }
+    }
+
+    /// The root of a point's set, and whether the point is turned against it.
+    fn root(&mut self, point: u32) -> (u32, bool) {
+        let (mut root, mut turned) = (point, false);
+        while self.parent[root as usize] != root {
+            turned ^= self.turned[root as usize];
+            root = self.parent[root as usize];
+        }
+        // Everything on the way now hangs from the root itself.
+        let (mut at, mut rest) = (point, turned);
+        while self.parent[at as usize] != root && at != root {
+            let (next, own) = (self.parent[at as usize], self.turned[at as usize]);
+            self.parent[at as usize] = root;
+            self.turned[at as usize] = rest;
+            rest ^= own;
+            at = next;
+        }
+        (root, turned)
+    }
+
+    /// Ties two points together unless they already are.
+    fn tie(&mut self, a: u32, b: u32, opposite: bool) {
+        let ((a, turned_a), (b, turned_b)) = (self.root(a), self.root(b));
+        if a != b {
+            let (low, high) = (a.min(b), a.max(b));
+            self.parent[high as usize] = low;
+            self.turned[high as usize] = turned_a ^ turned_b ^ opposite;
+        }
+    }
+}
+
+/// Turns normals so that neighbours agree and outermost points look outward.
+pub fn orient(positions: &[Vec3], nearest: &Nearest, normals: &mut [Vec3]) {
+    let mut sets = tied(nearest, normals);
+    let mut roots = Vec::with_capacity(normals.len());
+    for point in 0..normals.len() as u32 {
+        let (root, turned) = sets.root(point);
+        roots.push(root);
+        if turned {
+            normals[point as usize] = -normals[point as usize];
+        }
+    }
+    drop(sets);
+    let inward = inward(positions, normals, &roots);
+    for (normal, root) in normals.iter_mut().zip(&roots) {
+        if inward[*root as usize] {
+            *normal = -*normal;
+        }
+    }
+}
+
+/// The spanning forest's ties.
+fn tied(nearest: &Nearest, normals: &[Vec3]) -> SignedSets {
+    let mut edges: Vec<(u32, u32, u32)> = nearest
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(a, row)| {
+            let a = a as u32;
+            listed(&row[..TAKEN.min(NEAREST)]).filter_map(move |b| {
+                // An edge that both ends list is taken from the lesser.
+                let twice = b < a && listed(&nearest[b as usize][..TAKEN.min(NEAREST)]).any(|c| c == a);
+                let weight = 1.0 - normals[a as usize].dot(normals[b as usize]).abs();
+                // Positive floats sort like their bits.
+                (!twice).then_some((weight.max(0.0).to_bits(), a, b))
+            })
+        })
+        .collect();
+    edges.par_sort_unstable();
+    let mut sets = SignedSets::new(normals.len());
+    for (_, a, b) in edges {
+        sets.tie(a, b, normals[a as usize].dot(normals[b as usize]) < 0.0);
+    }
+    sets
+}
+
+/// For each root, whether its set's normals look inward.
+fn inward(positions: &[Vec3], normals: &[Vec3], roots: &[u32]) -> Vec<bool> {
+    let mut sets: Vec<u32> = roots.to_vec();
+    sets.sort_unstable();
+    sets.dedup();
+    let set_of = |root: u32| sets.partition_point(|&other| other < root);
+    let mut outermost = vec![[(f32::NEG_INFINITY, 0_u32); DIRECTIONS]; sets.len()];
+    let middle = positions.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / positions.len().max(1) as f64;
+    let mut away = vec![0.0; sets.len()];
+    let directions: Vec<Vec3> = directions().collect();
+    let mut last = (u32::MAX, 0);
+    for (point, &root) in roots.iter().enumerate() {
+        if root != last.0 {
+            last = (root, set_of(root));
+        }
+        let set = last.1;
+        away[set] += normals[point].as_dvec3().dot(positions[point].as_dvec3() - middle);
+        for (best, direction) in outermost[set].iter_mut().zip(&directions) {
+            let reach = positions[point].dot(*direction);
+            if reach > best.0 {
+                *best = (reach, point as u32);
+            }
+        }
+    }
+    let mut inward = vec![false; roots.len()];
+    for (set, &root) in sets.iter().enumerate() {
+        let look =
+            |(best, direction): (&(f32, u32), &Vec3)| f64::from(normals[best.1 as usize].dot(*direction));
+        let vote = outermost[set].iter().zip(&directions).map(look).sum::<f64>() / DIRECTIONS as f64;
+        inward[root as usize] = if vote.abs() > OUTERMOST { vote < 0.0 } else { away[set] < 0.0 };
+    }
+    inward
+}
+
+fn directions() -> impl Iterator<Item = Vec3> {
+    (0..27)
+        .filter(|&n| n != 13)
+        .map(|n| Vec3::new((n % 3) as f32 - 1.0, (n / 3 % 3) as f32 - 1.0, (n / 9) as f32 - 1.0).normalize())
+}
+
+/// Share of the neighbouring pairs whose normals do not look opposite ways.
+#[must_use]
+pub fn agreement(nearest: &Nearest, normals: &[Vec3]) -> f64 {
+    let (pairs, opposite) = nearest
+        .par_iter()
+        .enumerate()
+        .map(|(a, row)| {
+            let around = || listed(&row[..TAKEN]);
+            let opposite = around().filter(|&b| normals[a].dot(normals[b as usize]) < OPPOSITE).count();
+            (around().count(), opposite)
+        })
+        .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    1.0 - opposite as f64 / pairs.max(1) as f64
+}
+
+/// Normals that make a smaller cosine than this (120°) look opposite ways.
+const OPPOSITE: f32 = -0.5;
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::analyse::canonical::mix;
+    use crate::analyse::nearest::Search;
+
+    /// Two spheres, one within the other, and a saddle-shaped patch beside them.
+    fn scene() -> (Vec<Vec3>, Vec<Vec3>) {
+        let unit = |n: u64| {
+            let value = |m: u64| (mix(m) >> 11) as f64 / (1_u64 << 53) as f64;
+            let (z, (sin, cos)) =
+                (2.0 * value(2 * n) - 1.0, libm::sincos(value(2 * n + 1) * std::f64::consts::TAU));
+            let r = (1.0 - z * z).sqrt();
+            DVec3::new(r * cos, r * sin, z).as_vec3()
+        };
+        let mut points = Vec::new();
+        let mut normals = Vec::new();
+        for (radius, count) in [(0.2, 1500), (0.4, 4000)] {
+            points.extend((0..count).map(|n| radius * unit(n)));
+            normals.extend((0..count).map(unit));
+        }
+        for n in 0..1600 {
+            let (x, y) = ((n % 40) as f32 / 40.0 - 0.5, (n / 40) as f32 / 40.0 - 0.5);
+            points.push(Vec3::new(x, y, 0.9 + 0.3 * (x * x - y * y)));
+            normals.push(Vec3::new(-0.6 * x, 0.6 * y, 1.0).normalize());
+        }
+        (points, normals)
+    }
+
+    #[test]
+    fn signs_drawn_at_random_are_found_again() {
+        let (points, truth) = scene();
+        let nearest = Search::new(&points).unwrap().nearest();
+        let mut normals: Vec<Vec3> =
+            truth.iter().enumerate().map(|(n, t)| if mix(n as u64) & 1 == 0 { *t } else { -*t }).collect();
+        assert!(agreement(&nearest, &truth) > 0.99 && agreement(&nearest, &normals) < 0.7);
+        orient(&points, &nearest, &mut normals);
+        assert_eq!(normals, truth);
+    }
+}

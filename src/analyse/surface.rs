@@ -1,0 +1,183 @@
+//! The surface as the stages below see it: points with neighbours, pieces to cover, borders.
+
+use glam::{DVec3, Vec3};
+
+/// Marks the absence of a point.
+pub const NONE: u32 = u32::MAX;
+
+/// Lists of indices, one a row, stored end to end.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Rows {
+    /// Rows from `(row, item)` pairs, which are sorted and freed of repeats first.
+    #[must_use]
+    pub fn from_pairs(rows: usize, mut pairs: Vec<(u32, u32)>) -> Self {
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut starts = vec![0_u32; rows + 1];
+        for &(row, _) in &pairs {
+            starts[row as usize + 1] += 1;
+        }
+        for row in 0..rows {
+            starts[row + 1] += starts[row];
+        }
+        Self { starts, items: pairs.into_iter().map(|(_, item)| item).collect() }
+    }
+
+    /// Rows in which whatever row lists another, that other lists it too.
+    ///
+    /// `listed` gives what a row lists at least; nothing twice, and not the row itself.
+    #[must_use]
+    pub fn symmetric<I: Iterator<Item = u32>>(rows: u32, listed: impl Fn(u32) -> I) -> Self {
+        // Pairs would take several times the memory of the rows they become.
+        let missing = |row: u32, other: u32| !listed(other).any(|back| back == row);
+        let mut starts = vec![0_u32; rows as usize + 1];
+        for row in 0..rows {
+            for other in listed(row) {
+                starts[row as usize + 1] += 1;
+                starts[other as usize + 1] += u32::from(missing(row, other));
+            }
+        }
+        for row in 0..rows as usize {
+            starts[row + 1] += starts[row];
+        }
+        let mut items = vec![0_u32; starts[rows as usize] as usize];
+        let mut ends = starts.clone();
+        let mut put = |row: u32, item: u32| {
+            items[ends[row as usize] as usize] = item;
+            ends[row as usize] += 1;
+        };
+        for row in 0..rows {
+            for other in listed(row) {
+                put(row, other);
+                if missing(row, other) {
+                    put(other, row);
+                }
+            }
+        }
+        for row in 0..rows as usize {
+            items[starts[row] as usize..starts[row + 1] as usize].sort_unstable();
+        }
+        Self { starts, items }
+    }
+
+    /// `rows` rows, the first `count` of which hold their own number, the others nothing.
+    #[must_use]
+    pub fn singles(rows: u32, count: u32) -> Self {
+        Self { starts: (0..=rows).map(|row| row.min(count)).collect(), items: (0..count).collect() }
+    }
+
+    /// The items of a row, ascending.
+    #[must_use]
+    pub fn row(&self, row: u32) -> &[u32] {
+        let row = row as usize;
+        &self.items[self.starts[row] as usize..self.starts[row + 1] as usize]
+    }
+}
+
+/// A sampled surface, cut along its feature lines.
+///
+/// A point on a feature line is there once for each side, so that whatever walks along
+/// `neighbours` stays on its own side, and each side's samples reach the line itself.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Positions, model units.
+    pub points: Vec<Vec3>,
+    /// For each point the place it lies at: points of one place are the sides of a line there.
+    pub places: Vec<u32>,
+    /// Unit normals, outward.
+    pub normals: Vec<Vec3>,
+    /// Colours, or empty.
+    pub colors: Vec<[u8; 3]>,
+    /// For each point, those joined to it by the surface.
+    pub neighbours: Rows,
+    /// What must be covered: triangles of points, or a single point three times.
+    pub pieces: Vec<[u32; 3]>,
+    /// For each point, the pieces it is a corner of.
+    pub pieces_of: Rows,
+    /// For each point, how far inside a splat it must lie to count as covered. Zero for a
+    /// mesh, whose pieces are whole triangles; the local sample spacing for a cloud.
+    pub margin: Vec<f32>,
+    /// For each point the next one along the border, with the surface on the left; or [`NONE`].
+    pub border_next: Vec<u32>,
+    /// The inverse of `border_next`.
+    pub border_prev: Vec<u32>,
+}
+
+impl Surface {
+    /// A position in 64 bits.
+    #[must_use]
+    pub fn point(&self, index: u32) -> DVec3 {
+        self.points[index as usize].as_dvec3()
+    }
+
+    /// A normal in 64 bits.
+    #[must_use]
+    pub fn normal(&self, index: u32) -> DVec3 {
+        self.normals[index as usize].as_dvec3()
+    }
+
+    /// Whether a point lies on a feature line or border.
+    #[must_use]
+    pub fn on_border(&self, index: u32) -> bool {
+        self.border_next[index as usize] != NONE || self.border_prev[index as usize] != NONE
+    }
+
+    /// The area a piece stands for, in squared model units.
+    #[must_use]
+    pub fn area(&self, piece: u32) -> f64 {
+        let [a, b, c] = self.pieces[piece as usize];
+        if a == b {
+            let margin = f64::from(self.margin[a as usize]);
+            return margin * margin;
+        }
+        let (a, b, c) = (self.point(a), self.point(b), self.point(c));
+        0.5 * (b - a).cross(c - a).length()
+    }
+
+    /// The middle of a piece.
+    #[must_use]
+    pub fn middle(&self, piece: u32) -> DVec3 {
+        let [a, b, c] = self.pieces[piece as usize];
+        if a == b {
+            return self.point(a);
+        }
+        (self.point(a) + self.point(b) + self.point(c)) / 3.0
+    }
+}
+
+/// Fills `border_prev` from `border_next`.
+#[must_use]
+pub fn inverse(next: &[u32]) -> Vec<u32> {
+    let mut prev = vec![NONE; next.len()];
+    for (from, &to) in next.iter().enumerate() {
+        if to != NONE {
+            prev[to as usize] = from as u32;
+        }
+    }
+    prev
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_one_row_lists_the_other_lists_too() {
+        let lists: [&[u32]; 4] = [&[1, 2], &[2], &[0], &[]];
+        let rows = Rows::symmetric(4, |row| lists[row as usize].iter().copied());
+        assert_eq!(
+            (0..4).map(|row| rows.row(row).to_vec()).collect::<Vec<_>>(),
+            [vec![1, 2], vec![0, 2], vec![0, 1], vec![]]
+        );
+        let singles = Rows::singles(3, 2);
+        assert_eq!(
+            (0..3).map(|row| singles.row(row).to_vec()).collect::<Vec<_>>(),
+            [vec![0], vec![1], vec![]]
+        );
+    }
+}

@@ -1,0 +1,381 @@
+//! The recipe: from a mesh or cloud to an asset, one stage a line.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use glam::{DVec3, Vec3};
+
+use crate::analyse::cloud_normals::NormalSource;
+use crate::analyse::cloud_surface::cloud_surface;
+use crate::analyse::mesh_surface::{Features, Found, mesh_surface};
+use crate::analyse::surface::Surface;
+use crate::error::{Error, Result};
+use crate::ingest::Input;
+use crate::model::asset::{Accuracy, Asset};
+use crate::model::frame::Frame;
+use crate::model::polyline::Polylines;
+use crate::model::splat::Splat;
+use crate::sample::budget::Budget;
+use crate::sample::candidates::{Regions, candidates};
+use crate::sample::cover::{Choice, cover};
+use crate::sample::grow::Grower;
+use crate::tolerance::DEFAULT_MAX_ERROR;
+
+/// Where the feature lines come from.
+#[derive(Clone, Debug, Default)]
+pub enum Edges {
+    /// Found on a mesh by dihedral angle and border; none for a cloud.
+    #[default]
+    Auto,
+    /// No feature lines; a mesh's borders still end its surface.
+    None,
+    /// Given, in input coordinates.
+    Given(Polylines),
+}
+
+/// An error budget as the user states it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MaxError {
+    /// Fraction of the bounding box's diagonal.
+    Relative(f64),
+    /// In the input's units.
+    Absolute(f64),
+}
+
+impl Default for MaxError {
+    fn default() -> Self {
+        Self::Relative(DEFAULT_MAX_ERROR)
+    }
+}
+
+impl fmt::Display for MaxError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            // Percents are read back as they were written: ten digits hide the scaling's rounding.
+            Self::Relative(share) => write!(out, "{}%", (share * 1e12).round() / 1e10),
+            Self::Absolute(units) => write!(out, "{units}"),
+        }
+    }
+}
+
+impl FromStr for MaxError {
+    type Err = String;
+
+    /// A percentage of the diagonal, `0.1%`, or a length in the input's units, `0.002`.
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let (number, relative) = match text.strip_suffix('%') {
+            Some(number) => (number, true),
+            None => (text, false),
+        };
+        let value: f64 = number.trim().parse().map_err(|_| {
+            "give a percentage of the diagonal, such as 0.1%, or a length in the input's units, such as 0.002"
+                .to_owned()
+        })?;
+        let positive = value > 0.0 && value.is_finite();
+        match (positive, relative) {
+            (false, _) => Err("the greatest error must be positive and finite".into()),
+            (true, true) if value > 100.0 => Err("more than 100% of the diagonal bounds nothing".into()),
+            (true, true) => Ok(Self::Relative(value / 100.0)),
+            (true, false) => Ok(Self::Absolute(value)),
+        }
+    }
+}
+
+/// What to do with the input's normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Normals {
+    /// Keep them where they are sound, else estimate.
+    #[default]
+    Auto,
+    /// Keep them; an input without sound normals is an error.
+    Keep,
+    /// Estimate them from the positions.
+    Estimate,
+}
+
+impl From<Normals> for NormalSource {
+    fn from(normals: Normals) -> Self {
+        match normals {
+            Normals::Auto => Self::Auto,
+            Normals::Keep => Self::Keep,
+            Normals::Estimate => Self::Estimate,
+        }
+    }
+}
+
+/// What to do with the input's colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colors {
+    /// Keep them if the input has any that differ.
+    #[default]
+    Auto,
+    /// Keep them; an input without colours is an error.
+    Keep,
+    /// Leave them out.
+    Drop,
+}
+
+/// How to bake.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The error bound.
+    pub max_error: MaxError,
+    /// Where the feature lines come from.
+    pub edges: Edges,
+    /// Dihedral angle, degrees, from which a mesh edge is a feature edge under [`Edges::Auto`].
+    pub edge_angle: f64,
+    /// 1 (fastest) to 9 (fewest bytes).
+    pub effort: u8,
+    /// What to do with normals.
+    pub normals: Normals,
+    /// What to do with colours.
+    pub colors: Colors,
+}
+
+/// Told how the work goes on; all methods may be called from the baking thread only.
+pub trait Progress {
+    /// A stage begins (`read`, `analyse`, `sample`, `clip`, `encode`, `write`).
+    fn stage(&mut self, name: &'static str);
+    /// The stage now at hand has done `done` of `total` units of its own.
+    fn advance(&mut self, done: u64, total: u64);
+}
+
+/// Says nothing.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn stage(&mut self, _: &'static str) {}
+    fn advance(&mut self, _: u64, _: u64) {}
+}
+
+/// Wall and CPU time of one stage.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct StageTime {
+    /// The stage's name.
+    pub name: String,
+    /// Seconds on the clock.
+    pub wall_seconds: f64,
+    /// Seconds of processor time over all threads.
+    pub cpu_seconds: f64,
+}
+
+/// What a bake made, and how it went.
+#[derive(Clone, Debug)]
+pub struct Baked {
+    /// The splats, rounded but for their clip curves; `fit` is not yet measured.
+    pub asset: Asset,
+    /// Time of each stage.
+    pub stages: Vec<StageTime>,
+    /// Feature edges found or matched.
+    pub features: Found,
+    /// How the splats were chosen.
+    pub choice: Choice,
+    /// Points of the surface that the splats were fitted to.
+    pub samples: usize,
+    /// Points of a cloud, ascending, that belong to no surface: the bound does not hold for them.
+    pub left_out: Vec<u32>,
+    /// Why the colours were left out, if they were.
+    pub colors_left_out: Option<&'static str>,
+}
+
+/// What a splat without clip curves comes back as, under an error bound in model units, from
+/// whatever will store it; `None` if it cannot be stored. For those who store nothing: `|s, _|
+/// Some(s.clone())`.
+pub type Rounding<'a> = dyn Fn(&Splat, f64) -> Option<Splat> + Sync + 'a;
+
+/// Bakes an input to splats that keep the error bound when rounded by `rounding`.
+///
+/// # Errors
+/// Usage errors for options out of range; input errors for an input without any surface.
+pub fn bake(
+    input: &Input,
+    options: &Options,
+    rounding: &Rounding<'_>,
+    progress: &mut dyn Progress,
+) -> Result<Baked> {
+    let mut clock = Clock::default();
+    let cloud = input.cloud();
+    let diagonal = diagonal(&cloud.positions);
+    let max_error = model_error(options, diagonal, cloud.frame.scale())?;
+    clock.stage(progress, "analyse");
+    let Analysed { mut surface, features, left_out } = analyse(input, options, max_error, diagonal)?;
+    let colors_left_out = choose_colors(&mut surface, options.colors)?;
+    clock.stage(progress, "sample");
+    let round = |splat: &Splat| rounding(splat, max_error);
+    let grower = Grower { surface: &surface, budget: Budget::new(max_error), round: &round };
+    let regions = Regions::new(surface.points.len());
+    let total = surface.pieces.len() as u64;
+    let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));
+    clock.stage(progress, "cover");
+    let (splats, choice) = cover(&grower, &regions, found);
+    if choice.uncovered > 0 {
+        return Err(Error::Internal(format!(
+            "{} pieces of the surface could not be covered",
+            choice.uncovered
+        )));
+    }
+    let asset = Asset {
+        frame: cloud.frame,
+        diagonal,
+        max_error,
+        fit: Accuracy::default(),
+        has_colors: !surface.colors.is_empty(),
+        splats,
+    };
+    let samples = surface.points.len();
+    Ok(Baked { asset, stages: clock.finish(), features, choice, samples, left_out, colors_left_out })
+}
+
+/// Length of the bounding box's diagonal.
+fn diagonal(positions: &[Vec3]) -> f64 {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for &p in positions {
+        (low, high) = (low.min(p), high.max(p));
+    }
+    (high.as_dvec3() - low.as_dvec3()).length()
+}
+
+/// The error bound in model units.
+fn model_error(options: &Options, diagonal: f64, scale: f64) -> Result<f64> {
+    if !(1..=9).contains(&options.effort) {
+        return Err(Error::Usage(format!("effort {} is not within 1 to 9", options.effort)));
+    }
+    let error = match options.max_error {
+        MaxError::Relative(share) => share * diagonal,
+        MaxError::Absolute(units) => units / scale,
+    };
+    if diagonal <= 0.0 {
+        return Err(Error::Usage(
+            "all points of the input lie at one place: there is no surface to bake".into(),
+        ));
+    }
+    if !(error > 0.0 && error.is_finite()) {
+        return Err(Error::Usage(
+            "the error bound must be greater than zero; give --max-error in the input's units".into(),
+        ));
+    }
+    if error < LEAST_ERROR_SHARE * diagonal {
+        return Err(Error::Usage(format!(
+            "the error bound is {:.1e} of the model's size, finer than positions are kept; the least is {:.1e}",
+            error / diagonal,
+            LEAST_ERROR_SHARE
+        )));
+    }
+    Ok(error)
+}
+
+/// Bounds below this share of the diagonal drown in the rounding of 32-bit positions.
+const LEAST_ERROR_SHARE: f64 = 1e-6;
+
+/// No refinement makes more pieces than this.
+const MOST_PIECES: usize = 4_000_000;
+
+/// Pieces are refined to this share of the radius that a quadric splat reaches on a generic
+/// smooth surface: there the third-order term `r³ / L²` meets the error, with features of
+/// size `L` a quarter of the diagonal.
+const PIECE_SHARE: f64 = 1.0 / 3.0;
+
+/// The input's surface, and what was found on the way to it.
+#[derive(Default)]
+struct Analysed {
+    surface: Surface,
+    features: Found,
+    left_out: Vec<u32>,
+}
+
+/// Lines found on a mesh that are shorter than this many error bounds, taken together with all
+/// that they meet, are left out.
+const SHORTEST_LINE: f64 = 8.0;
+
+fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> Result<Analysed> {
+    match input {
+        Input::Mesh(mesh) => {
+            let feature = 0.25 * diagonal;
+            let longest = PIECE_SHARE * libm::cbrt(max_error * feature * feature);
+            let features = match &options.edges {
+                Edges::Auto => {
+                    Features::Sharp { degrees: options.edge_angle, shortest: SHORTEST_LINE * max_error }
+                }
+                Edges::None => Features::None,
+                Edges::Given(lines) => Features::Given(segments(lines, &mesh.vertices.frame)),
+            };
+            let (surface, features) = mesh_surface(mesh, &features, longest, MOST_PIECES);
+            Ok(Analysed { surface, features, ..Analysed::default() })
+        }
+        Input::Cloud(cloud) => {
+            let lines = match &options.edges {
+                Edges::Given(lines) => model_lines(lines, &cloud.frame),
+                Edges::Auto | Edges::None => Vec::new(),
+            };
+            let found = cloud_surface(cloud, options.normals.into(), &lines)?;
+            let feature_edges = found.matched.map_or(0, |matched| matched.edges);
+            let features = Found { feature_edges, matched: found.matched };
+            Ok(Analysed { surface: found.surface, features, left_out: found.left_out })
+        }
+    }
+}
+
+/// Lines in model units.
+fn model_lines(lines: &Polylines, frame: &Frame) -> Vec<Vec<DVec3>> {
+    lines.lines.iter().map(|line| line.iter().map(|&point| frame.to_model(point)).collect()).collect()
+}
+
+/// The segments of lines, in model units.
+fn segments(lines: &Polylines, frame: &Frame) -> Vec<[DVec3; 2]> {
+    let lines = model_lines(lines, frame);
+    lines.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+/// Drops the surface's colours where they are not wanted; why, if so.
+fn choose_colors(surface: &mut Surface, colors: Colors) -> Result<Option<&'static str>> {
+    let differ = surface.colors.windows(2).any(|pair| pair[0] != pair[1]);
+    let reason = match (colors, surface.colors.is_empty(), differ) {
+        (Colors::Keep, true, _) => {
+            return Err(Error::Usage("--color keep: the input has no colours".into()));
+        }
+        (_, true, _) => Some("the input has none"),
+        (Colors::Drop, ..) => Some("dropped as asked"),
+        (Colors::Auto, false, false) => Some("the input is of one colour"),
+        _ => None,
+    };
+    if reason.is_some() {
+        surface.colors.clear();
+    }
+    Ok(reason)
+}
+
+/// Times stages one after another.
+#[derive(Default)]
+pub struct Clock {
+    running: Option<(&'static str, Instant, Option<ProcessTime>)>,
+    done: Vec<StageTime>,
+}
+
+impl Clock {
+    /// Ends the stage at hand and begins the next.
+    pub fn stage(&mut self, progress: &mut dyn Progress, name: &'static str) {
+        self.close();
+        progress.stage(name);
+        self.running = Some((name, Instant::now(), ProcessTime::try_now().ok()));
+    }
+
+    fn close(&mut self) {
+        if let Some((name, wall, cpu)) = self.running.take() {
+            let cpu = cpu.and_then(|start| Some(ProcessTime::try_now().ok()?.duration_since(start)));
+            self.done.push(StageTime {
+                name: name.into(),
+                wall_seconds: wall.elapsed().as_secs_f64(),
+                cpu_seconds: cpu.map_or(0.0, |time| time.as_secs_f64()),
+            });
+        }
+    }
+
+    /// Ends the stage at hand; the times of all.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<StageTime> {
+        self.close();
+        self.done
+    }
+}

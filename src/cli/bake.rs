@@ -1,0 +1,203 @@
+//! `qsplat bake`: a mesh or cloud in, a `.qsplat` out.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use qsplat::bake::{Baked, Clock, Colors, Edges, MaxError, Normals, Options};
+use qsplat::error::{Error, Result};
+use qsplat::ingest::{self, Input};
+use qsplat::report::{self, Report};
+use qsplat::tolerance::DEFAULT_EDGE_ANGLE;
+use qsplat::{deliver, format};
+
+use super::progress::Style;
+use super::{Notes, Outcome, source};
+
+/// Bakes a mesh or a point cloud to a .qsplat.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A mesh or cloud: PLY, OBJ, glTF, GLB
+    #[arg(value_name = "INPUT")]
+    input: PathBuf,
+    /// Feature lines: an OBJ with `l` records or a PLY with an `edge` element; `auto` finds them
+    /// on a mesh by dihedral angle and border and takes none for a cloud
+    #[arg(long, value_name = "FILE|auto|none", default_value = "auto")]
+    edges: String,
+    /// Dihedral angle from which `--edges auto` takes a mesh edge for a feature edge, degrees
+    #[arg(long, value_name = "DEG", default_value_t = DEFAULT_EDGE_ANGLE, value_parser = edge_angle)]
+    edge_angle: f64,
+    /// The file to write
+    #[arg(short, long, value_name = "OUT.qsplat")]
+    output: PathBuf,
+    /// Greatest distance of an input point from the splats: a percentage of the bounding box's
+    /// diagonal, or a length in the input's units
+    #[arg(long, value_name = "0.1%|0.002", default_value_t, allow_hyphen_values = true)]
+    max_error: MaxError,
+    /// 1 (fastest) to 9 (fewest bytes)
+    #[arg(long, value_name = "1..9", default_value_t = DEFAULT_EFFORT, value_parser = clap::value_parser!(u8).range(1..=9))]
+    effort: u8,
+    /// Whether to trust the input's normals
+    #[arg(long, value_enum, default_value_t)]
+    normals: NormalsArgument,
+    /// Whether to keep the input's colours
+    #[arg(long, value_enum, default_value_t)]
+    color: ColorArgument,
+    /// Writes the report as JSON (docs/report-schema.md)
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// How to tell the progress, on standard error
+    #[arg(long, value_enum, default_value_t)]
+    progress: Style,
+}
+
+const DEFAULT_EFFORT: u8 = 5;
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum NormalsArgument {
+    /// Keep them where they are sound, else estimate
+    #[default]
+    Auto,
+    /// Keep them; refuse an input without sound ones
+    Keep,
+    /// Estimate them from the positions
+    Estimate,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum ColorArgument {
+    /// Keep them if they differ
+    #[default]
+    Auto,
+    /// Keep them; refuse an input without
+    Keep,
+    /// Leave them out
+    Drop,
+}
+
+fn edge_angle(text: &str) -> std::result::Result<f64, String> {
+    let degrees: f64 = text.parse().map_err(|_| "give an angle in degrees, such as 40".to_owned())?;
+    if degrees > 0.0 && degrees <= 180.0 {
+        Ok(degrees)
+    } else {
+        Err("give an angle in degrees within 0 and 180".into())
+    }
+}
+
+impl Arguments {
+    pub(super) fn run(self, notes: &mut Notes<'_>) -> Result<Outcome> {
+        let quiet = notes.quiet;
+        let mut progress = self.progress.teller(quiet, notes.out);
+        let mut clock = Clock::default();
+        clock.stage(progress.as_mut(), "read");
+        let options = self.options()?;
+        let input = source::input(&self.input)?;
+        let mut stages = clock.finish();
+        let delivery =
+            deliver::deliver(&input, &options, progress.as_mut()).map_err(|error| match error {
+                // What cannot be baked as asked is said of a file.
+                Error::Usage(what) => Error::Usage(format!("{}: {what}", self.input.display())),
+                other => other,
+            })?;
+        stages.extend(delivery.stages.iter().cloned());
+        let mut clock = Clock::default();
+        clock.stage(progress.as_mut(), "write");
+        format::write_file(&self.output, &delivery.bytes)?;
+        stages.extend(clock.finish());
+        drop(progress);
+        let origin = report::Origin {
+            input: self.facts(&input, &options, &delivery.baked),
+            options: self.stated(),
+            choice: choice(&delivery.baked),
+            run: report::Run::of_stages(stages, rayon::current_num_threads()),
+        };
+        let info = format::inspect(&delivery.bytes, &format::Limits::default())?;
+        let report = Report::new(&delivery.asset, report::File::new(&self.output, &info), Some(origin));
+        if let Some(path) = &self.report {
+            format::write_file(path, report.json()?.as_bytes())?;
+        }
+        let text = if quiet { String::new() } else { report.table() };
+        // The bake refuses to break its bound; if it ever did, this is a failed check.
+        Ok(Outcome { text, passed: report.error.within_budget })
+    }
+
+    fn options(&self) -> Result<Options> {
+        let edges = match self.edges.as_str() {
+            "auto" => Edges::Auto,
+            "none" => Edges::None,
+            path => Edges::Given(ingest::read_edges(path.as_ref(), &ingest::Limits::default())?),
+        };
+        Ok(Options {
+            max_error: self.max_error,
+            edges,
+            edge_angle: self.edge_angle,
+            effort: self.effort,
+            normals: match self.normals {
+                NormalsArgument::Auto => Normals::Auto,
+                NormalsArgument::Keep => Normals::Keep,
+                NormalsArgument::Estimate => Normals::Estimate,
+            },
+            colors: match self.color {
+                ColorArgument::Auto => Colors::Auto,
+                ColorArgument::Keep => Colors::Keep,
+                ColorArgument::Drop => Colors::Drop,
+            },
+        })
+    }
+
+    fn facts(&self, input: &Input, options: &Options, baked: &Baked) -> report::Input {
+        let cloud = input.cloud();
+        let (kind, triangles, dropped_triangles) = match input {
+            Input::Mesh(mesh) => ("mesh", mesh.triangles.len(), mesh.dropped),
+            Input::Cloud(_) => ("cloud", 0, 0),
+        };
+        let line_segments = match &options.edges {
+            Edges::Given(lines) => Some(lines.segments() as u64),
+            Edges::Auto | Edges::None => None,
+        };
+        let matched = baked.features.matched.filter(|matched| matched.length > 0.0);
+        report::Input {
+            path: self.input.display().to_string(),
+            kind: kind.into(),
+            points: cloud.positions.len() as u64,
+            triangles: triangles as u64,
+            dropped_points: cloud.dropped as u64,
+            dropped_triangles: dropped_triangles as u64,
+            normals: !cloud.normals.is_empty(),
+            colors: !cloud.colors.is_empty(),
+            colors_left_out: baked.colors_left_out.map(Into::into),
+            feature_edges: baked.features.feature_edges as u64,
+            line_segments,
+            lines_matched: matched.map(|matched| matched.matched_length / matched.length),
+        }
+    }
+
+    /// The options as the report states them.
+    fn stated(&self) -> report::Options {
+        let (max_error, unit) = match self.max_error {
+            MaxError::Relative(share) => (share, "diagonal"),
+            MaxError::Absolute(length) => (length, "input"),
+        };
+        let name = |value: Option<clap::builder::PossibleValue>| {
+            value.map_or_else(String::new, |v| v.get_name().into())
+        };
+        report::Options {
+            max_error,
+            max_error_unit: unit.into(),
+            edges: self.edges.clone(),
+            edge_angle: self.edge_angle,
+            effort: self.effort,
+            normals: name(self.normals.to_possible_value()),
+            color: name(self.color.to_possible_value()),
+        }
+    }
+}
+
+fn choice(baked: &Baked) -> report::Choice {
+    report::Choice {
+        samples: baked.samples as u64,
+        candidates: baked.choice.candidates as u64,
+        redundant: baked.choice.redundant as u64,
+        last_resorts: baked.choice.last_resorts as u64,
+        low_rank: baked.choice.low_rank as u64,
+    }
+}

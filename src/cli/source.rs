@@ -1,0 +1,27 @@
+//! Reading what the user names.
+
+use std::io::Read;
+use std::path::Path;
+
+use qsplat::error::{Error, Result};
+use qsplat::format;
+use qsplat::ingest::{self, Input};
+use qsplat::model::asset::Asset;
+
+/// Whether a file begins as a `.qsplat` does.
+pub(super) fn is_qsplat(path: &Path) -> Result<bool> {
+    let mut start = Vec::new();
+    let file = std::fs::File::open(path).map_err(Error::io(path))?;
+    file.take(format::MAGIC.len() as u64).read_to_end(&mut start).map_err(Error::io(path))?;
+    Ok(start == format::MAGIC)
+}
+
+/// Reads a mesh or cloud.
+pub(super) fn input(path: &Path) -> Result<Input> {
+    ingest::read(path, &ingest::Limits::default())
+}
+
+/// Reads a `.qsplat`.
+pub(super) fn asset(path: &Path) -> Result<Asset> {
+    format::read_file(path, &format::Limits::default())
+}

@@ -1,0 +1,102 @@
+//! Where lines meet the border of a splat's ellipse.
+
+use glam::DVec2;
+
+/// The part of a polyline inside an ellipse, from border to border.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// The points; the first and last lie on the border unless the run is closed.
+    pub points: Vec<DVec2>,
+    /// Whether it is a loop that never meets the border; its first point is not repeated.
+    pub closed: bool,
+}
+
+/// The parameters, ascending, at which the line through `a` and `b` meets the border.
+#[must_use]
+pub fn crossings(a: DVec2, b: DVec2, radii: DVec2) -> Option<(f64, f64)> {
+    let (p, d) = (a / radii, (b - a) / radii);
+    let (aa, half, c) = (d.length_squared(), p.dot(d), p.length_squared() - 1.0);
+    let root = half * half - aa * c;
+    if !(root > 0.0 && aa > 0.0) {
+        return None;
+    }
+    // The stable pair of roots: no cancellation between -half and the root.
+    let q = -(half + root.sqrt().copysign(half));
+    let (s, t) = (q / aa, c / q);
+    (s.is_finite() && t.is_finite()).then_some((s.min(t), s.max(t)))
+}
+
+/// Where the ray from an inner point along a direction leaves the ellipse.
+#[must_use]
+pub fn exit(from: DVec2, direction: DVec2, radii: DVec2) -> Option<DVec2> {
+    let (_, t) = crossings(from, from + direction, radii)?;
+    (t >= 0.0).then(|| from + t * direction)
+}
+
+/// Central angle of a point, radians in `[0, 2π)`.
+#[must_use]
+pub fn angle(point: DVec2) -> f64 {
+    let angle = libm::atan2(point.y, point.x);
+    if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
+}
+
+/// Cuts a polyline into the runs that lie inside an ellipse.
+///
+/// `None` if an open polyline begins or ends inside: it does not bound what lies there.
+#[must_use]
+pub fn runs(line: &[DVec2], closed: bool, radii: DVec2) -> Option<Vec<Run>> {
+    let inside = |p: DVec2| (p / radii).length_squared() < 1.0;
+    if closed {
+        let Some(start) = line.iter().position(|&p| !inside(p)) else {
+            return Some(vec![Run { points: line.to_vec(), closed: true }]);
+        };
+        let turned: Vec<DVec2> = (0..=line.len()).map(|n| line[(start + n) % line.len()]).collect();
+        return runs(&turned, false, radii);
+    }
+    if line.first().is_some_and(|&p| inside(p)) || line.last().is_some_and(|&p| inside(p)) {
+        return None;
+    }
+    let mut found = Vec::new();
+    let mut open: Vec<DVec2> = Vec::new();
+    for pair in line.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let Some((enter, leave)) = crossings(a, b, radii) else { continue };
+        if !inside(a) && enter > 0.0 && enter < 1.0 {
+            open = vec![a.lerp(b, enter)];
+        }
+        if inside(b) {
+            open.push(b);
+        } else if !open.is_empty() {
+            open.push(a.lerp(b, leave));
+            found.push(Run { points: std::mem::take(&mut open), closed: false });
+        }
+    }
+    Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zigzag_is_cut_into_its_inner_runs() {
+        let line =
+            [(-3.0, 0.5), (0.0, 0.5), (3.0, 0.5), (3.0, 0.0), (-3.0, -0.2)].map(|(x, y)| DVec2::new(x, y));
+        let radii = DVec2::new(2.0, 1.0);
+        let found = runs(&line, false, radii).unwrap_or_default();
+        assert_eq!(found.iter().map(|run| run.points.len()).collect::<Vec<_>>(), [3, 2]);
+        for run in &found {
+            for end in [run.points[0], run.points[run.points.len() - 1]] {
+                assert!(((end / radii).length() - 1.0).abs() < 1e-12);
+            }
+        }
+        assert!(runs(&line[1..], false, radii).is_none(), "begins inside");
+    }
+
+    #[test]
+    fn a_loop_inside_stays_a_loop() {
+        let square = [(0.1, 0.1), (0.2, 0.1), (0.2, 0.2)].map(|(x, y)| DVec2::new(x, y));
+        let found = runs(&square, true, DVec2::ONE).unwrap_or_default();
+        assert!(found.len() == 1 && found[0].closed);
+    }
+}

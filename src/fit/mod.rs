@@ -1,0 +1,8 @@
+//! Quadrics from points, clip curves from lines: the two fits everything rests on.
+
+pub mod clip;
+pub mod conic;
+pub mod ellipse;
+pub mod offset;
+pub mod pose;
+pub mod quadric;

@@ -1,0 +1,152 @@
+//! Moves and turns a splat's frame until the quadric over it has only its two squares left.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use glam::{DMat3, DVec2, DVec3, Vec2Swizzles};
+
+use super::quadric::{Height, Moments};
+
+/// Where a splat stands: a point and an orthonormal frame `(i, j, k)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The point `C`.
+    pub center: DVec3,
+    /// Columns `i, j, k`.
+    pub axes: DMat3,
+}
+
+impl Pose {
+    /// A pose at a point with a normal and some tangent, the same for equal arguments.
+    #[must_use]
+    pub fn at(center: DVec3, normal: DVec3) -> Self {
+        let k = normal.normalize_or(DVec3::Z);
+        // The coordinate axis least along k gives the best conditioned cross product.
+        let a = k.abs();
+        let aside = if a.x <= a.y && a.x <= a.z {
+            DVec3::X
+        } else if a.y <= a.z {
+            DVec3::Y
+        } else {
+            DVec3::Z
+        };
+        let i = k.cross(aside).normalize();
+        Self { center, axes: DMat3::from_cols(i, k.cross(i), k) }
+    }
+
+    /// A point of space in this frame.
+    #[must_use]
+    pub fn to_local(&self, point: DVec3) -> DVec3 {
+        self.axes.transpose() * (point - self.center)
+    }
+
+    /// Moves the centre onto the surface and turns `k` to its normal there.
+    #[must_use]
+    pub fn settled(&self, height: &Height) -> Self {
+        let [i, _, k] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
+        let normal = (self.axes * DVec3::new(-height.c, -height.d, 1.0)).normalize();
+        let tangent = (i - normal * i.dot(normal)).normalize_or(self.axes.y_axis);
+        Self {
+            center: self.center + height.h * k,
+            axes: DMat3::from_cols(tangent, normal.cross(tangent), normal),
+        }
+    }
+
+    /// Turns `i, j` about `k` by an angle.
+    #[must_use]
+    pub fn turned(&self, theta: f64) -> Self {
+        let (sin, cos) = libm::sincos(theta);
+        let [i, j, k] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
+        Self { center: self.center, axes: DMat3::from_cols(cos * i + sin * j, cos * j - sin * i, k) }
+    }
+}
+
+/// A quadric in its principal frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Principal {
+    /// The frame, `k` normal to the quadric at its centre.
+    pub pose: Pose,
+    /// `(a, b)`.
+    pub curvature: DVec2,
+    /// How many of the fit's six terms the points determined.
+    pub rank: u8,
+}
+
+/// Rounds of fitting and turning. Each squares the slope that is left, so two leave nothing
+/// that matters of a frame that starts within a few degrees; a third serves bad starts.
+const ROUNDS: usize = 3;
+
+/// Fits a quadric to weighted points, from a first pose, and brings it into its principal frame.
+///
+/// `turn` allows `i, j` to leave the start's directions for the principal ones: not wanted
+/// where the curvatures differ so little that the directions would be noise, which `least`
+/// (the difference of `a` and `b` that matters, per model unit) decides.
+#[must_use]
+pub fn principal(
+    start: &Pose,
+    radius: f64,
+    least: f64,
+    points: impl Iterator<Item = (DVec3, f64)> + Clone,
+) -> Principal {
+    let mut pose = *start;
+    let mut height = Height::default();
+    for round in 0..ROUNDS {
+        let mut moments = Moments::new(radius);
+        for (point, weight) in points.clone() {
+            let local = pose.to_local(point);
+            moments.add(local.x, local.y, local.z, weight);
+        }
+        height = moments.solve();
+        if round + 1 < ROUNDS {
+            pose = pose.settled(&height);
+        }
+    }
+    pose.center += height.h * pose.axes.z_axis;
+    let difference = height.a - height.b;
+    if libm::hypot(difference, height.e) > least {
+        let mut theta = 0.5 * libm::atan2(height.e, difference);
+        let (mean, half) = (0.5 * (height.a + height.b), 0.5 * libm::hypot(difference, height.e));
+        let mut curvature = DVec2::new(mean + half, mean - half);
+        // Of the two ways to name the axes, the one that turns less.
+        if theta.abs() > FRAC_PI_4 {
+            theta -= FRAC_PI_2.copysign(theta);
+            curvature = curvature.yx();
+        }
+        return Principal { pose: pose.turned(theta), curvature, rank: height.rank };
+    }
+    Principal { pose, curvature: DVec2::new(height.a, height.b), rank: height.rank }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tilted_ellipsoid_patch_comes_back_in_its_principal_frame() {
+        let plant = Pose::at(DVec3::new(0.2, -0.1, 0.4), DVec3::new(1.0, 2.0, 0.5)).turned(0.7);
+        let curvature = DVec2::new(1.5, -0.4);
+        let points: Vec<DVec3> = (0..200)
+            .map(|n| {
+                let (sin, cos) = libm::sincos(2.4 * f64::from(n));
+                let uv = 0.1 * (f64::from(n) / 200.0).sqrt() * DVec2::new(cos, sin);
+                plant.center + plant.axes * uv.extend((curvature * uv * uv).element_sum())
+            })
+            .collect();
+        let start =
+            Pose::at(plant.center + 0.01 * plant.axes.z_axis, plant.axes.z_axis + 0.2 * plant.axes.x_axis);
+        let found = principal(&start, 0.1, 1e-6, points.iter().map(|&point| (point, 1.0)));
+        let same = if (found.curvature - curvature).length() < (found.curvature - curvature.yx()).length() {
+            found.pose.axes.x_axis
+        } else {
+            found.pose.axes.y_axis
+        };
+        let sorted = DVec2::new(found.curvature.max_element(), found.curvature.min_element());
+        assert!((sorted - curvature).length() < 2e-3, "{:?}", found.curvature);
+        // The centre moved along a tilted k: compare with the planted surface right there.
+        let at = plant.to_local(found.pose.center);
+        assert!((at.z - (curvature * at.truncate() * at.truncate()).element_sum()).abs() < 1e-5);
+        let normal = (plant.axes * (-2.0 * curvature * at.truncate()).extend(1.0)).normalize();
+        assert!(found.pose.axes.z_axis.distance(normal) < 1e-3);
+        assert!(same.dot(plant.axes.x_axis).abs() > 1.0 - 1e-4);
+        assert!((found.pose.axes.determinant() - 1.0).abs() < 1e-12);
+    }
+}

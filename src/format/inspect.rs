@@ -1,0 +1,114 @@
+//! What a file holds, without decoding it.
+
+use super::chunks::{COLOR_ID, STREAM_IDS, most_bytes};
+use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, HAS_COLORS, VERSION, read_head};
+use super::limits::Limits;
+use super::read::open;
+use super::tape::Stream;
+use crate::error::Result;
+
+/// A summary of a file.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FileInfo {
+    /// Version of the format.
+    pub version: u16,
+    /// Feature bits a reader must know.
+    pub required_features: u32,
+    /// Feature bits a reader may ignore.
+    pub optional_features: u32,
+    /// Bytes of the whole file.
+    pub bytes: u64,
+    /// Bytes of header, table and their checksum.
+    pub head_bytes: u64,
+    /// Splats.
+    pub splats: u32,
+    /// Straight clip curves.
+    pub straight_clips: u32,
+    /// Curved clip curves.
+    pub curved_clips: u32,
+    /// The chunks in the order of the file.
+    pub chunks: Vec<ChunkInfo>,
+    /// What a file may hold and this one does not.
+    pub absent: Vec<Absent>,
+}
+
+/// One chunk.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct ChunkInfo {
+    /// Its four characters.
+    pub id: String,
+    /// Whether this reader knows it.
+    pub known: bool,
+    /// Whether a reader that does not know it must refuse the file.
+    pub required: bool,
+    /// `zstd` or `none`.
+    pub coder: String,
+    /// Bytes after decoding.
+    pub raw_bytes: u64,
+    /// Bytes in the file.
+    pub coded_bytes: u64,
+}
+
+/// Something optional that a file does without.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Absent {
+    /// The chunk it would be in.
+    pub id: String,
+    /// What it is.
+    pub what: String,
+    /// Why it is not there.
+    pub why: String,
+}
+
+/// What may be absent: where it would be, what it is, why it is not there.
+const OPTIONAL: [([u8; 4], &str, &str); 9] = [
+    (STREAM_IDS[Stream::Kind as usize], "kinds", "all splats are of one kind"),
+    (STREAM_IDS[Stream::Shape as usize], "smaller radii", "every splat is round"),
+    (STREAM_IDS[Stream::Bend as usize], "curvatures", "every splat is flat"),
+    (STREAM_IDS[Stream::Spin as usize], "turns", "every splat looks the same however it is turned"),
+    (STREAM_IDS[Stream::More as usize], "escapes", "no splat has several clips or a high fineness"),
+    (STREAM_IDS[Stream::Ends as usize], "clip curves", "no splat is cut"),
+    (STREAM_IDS[Stream::Ctrl as usize], "clip control points", "no clip curve is curved"),
+    (STREAM_IDS[Stream::Rho as usize], "clip shapes", "no clip curve is curved"),
+    (COLOR_ID, "colours", "the splats have none"),
+];
+
+/// Sums up a file; checks header, table and checksums but decodes no chunk.
+///
+/// # Errors
+/// As [`super::decode`], as far as header and table go.
+pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<FileInfo> {
+    let (header, chunks) = open(bytes, limits)?;
+    let (_, table, head_bytes) = read_head(bytes)?;
+    let name = |id: [u8; 4]| String::from_utf8_lossy(&id).trim_end().to_owned();
+    let chunk = |entry: &super::layout::Entry| ChunkInfo {
+        id: entry.name().trim_end().to_owned(),
+        known: most_bytes(entry.id, &header).is_some(),
+        required: entry.flags & CHUNK_REQUIRED != 0,
+        coder: if entry.flags & CHUNK_ZSTD != 0 { "zstd" } else { "none" }.to_owned(),
+        raw_bytes: u64::from(entry.raw),
+        coded_bytes: u64::from(entry.coded),
+    };
+    let has_splats = header.splats > 0;
+    let why = |id: [u8; 4], why: &str| {
+        let painted = id == COLOR_ID && header.optional & HAS_COLORS != 0;
+        if has_splats && !painted { why.to_owned() } else { "there are no splats".to_owned() }
+    };
+    let absent = OPTIONAL
+        .iter()
+        .filter(|(id, ..)| chunks.find(*id).is_none())
+        .map(|(id, what, reason)| Absent { id: name(*id), what: (*what).to_owned(), why: why(*id, reason) })
+        .collect();
+    Ok(FileInfo {
+        version: VERSION,
+        required_features: header.required,
+        optional_features: header.optional,
+        bytes: bytes.len() as u64,
+        head_bytes: head_bytes as u64,
+        splats: header.splats,
+        straight_clips: header.straight,
+        curved_clips: header.curved,
+        chunks: table.iter().map(chunk).collect(),
+        absent,
+    })
+}

@@ -1,0 +1,122 @@
+//! From the bytes of a file to an asset.
+
+use super::chunks::{BITS_ID, COLOR_ID, Chunks, STREAM_IDS};
+use super::color;
+use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_QUADRICS, Header, read_head};
+use super::limits::Limits;
+use super::predict::History;
+use super::record::Record;
+use super::tape::{Reader, STREAMS};
+use super::walk::walk;
+use crate::error::{Error, Result};
+use crate::model::asset::Asset;
+use crate::model::splat::Splat;
+
+/// The asset in the bytes of a `.qsplat` file, version 1.
+///
+/// Every number of the result is finite and within the ranges of `format-spec.md`: radii are
+/// positive, axes orthonormal to 1e-15, `rho` in `(0, 1]` for curved clips. The result is the
+/// same to the last bit on every machine.
+///
+/// # Errors
+/// [`Error::Format`] for bytes that the specification forbids, with the place and the fault;
+/// [`Error::Limits`] before anything larger than the limits is allocated.
+pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Asset> {
+    let (header, chunks) = open(bytes, limits)?;
+    let mut splats = splats(&header, &chunks)?;
+    let has_colors = header.optional & HAS_COLORS != 0;
+    paint(&mut splats, &chunks, has_colors)?;
+    Ok(Asset {
+        frame: header.frame(),
+        diagonal: header.diagonal,
+        max_error: header.max_error,
+        fit: header.accuracy(),
+        has_colors,
+        splats,
+    })
+}
+
+/// Parses and checks all that needs no decoding.
+pub(super) fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(Header, Chunks<'a>)> {
+    limits.check("file bytes", bytes.len() as u64, limits.file_bytes)?;
+    let (header, table, start) = read_head(bytes)?;
+    header.check(limits)?;
+    let chunks = Chunks::lay_out(&header, &table, &bytes[start..], limits)?;
+    Ok((header, chunks))
+}
+
+fn splats(header: &Header, chunks: &Chunks<'_>) -> Result<Vec<Splat>> {
+    let mut raw: [Vec<u8>; STREAMS] = Default::default();
+    for (raw, id) in raw.iter_mut().zip(STREAM_IDS) {
+        *raw = chunks.bytes(id)?;
+    }
+    let has_kinds = !raw[0].is_empty();
+    if has_kinds && header.common_kind != 0 {
+        return Err(Error::format("common kind", "is not zero although there is a chunk of kinds"));
+    }
+    // Every splat takes at least one of these, so what follows allocates in proportion to them.
+    if raw[1].len() != header.splats as usize {
+        let what = format!("holds {} symbols for {} splats", raw[1].len(), header.splats);
+        return Err(Error::format("chunk CELL", what));
+    }
+    let bits = chunks.bytes(BITS_ID)?;
+    let common = (!has_kinds).then_some(header.common_kind);
+    let mut reader = Reader::new(raw.each_ref().map(Vec::as_slice), &bits, common);
+    let grids = header.grids();
+    let mut history = History::default();
+    let mut found = Found::default();
+    for _ in 0..header.splats {
+        let mut record = Record::default();
+        walk(&mut record, &history, &grids, &mut reader)?;
+        found.add(&record);
+        let splat = grids.splat(&record);
+        history.push(record, splat);
+    }
+    reader.finish()?;
+    found.check(header)?;
+    Ok(history.into_splats())
+}
+
+/// Sets the colours.
+fn paint(splats: &mut [Splat], chunks: &Chunks<'_>, has_colors: bool) -> Result<()> {
+    let planes = chunks.bytes(COLOR_ID)?;
+    let wanted = if has_colors { 3 * splats.len() } else { 0 };
+    if planes.len() != wanted {
+        return Err(Error::format("chunk COLR", format!("holds {} bytes instead of {wanted}", planes.len())));
+    }
+    let colors = color::join(&planes);
+    for (n, splat) in splats.iter_mut().enumerate() {
+        splat.color = colors.get(n).copied().unwrap_or([255; 3]);
+    }
+    Ok(())
+}
+
+/// What the records turned out to hold, to be compared with what the header states.
+#[derive(Default)]
+struct Found {
+    straight: u32,
+    curved: u32,
+    quadrics: bool,
+}
+
+impl Found {
+    fn add(&mut self, record: &Record) {
+        self.quadrics |= record.bend != [0; 2];
+        for clip in &record.clips {
+            *if clip.rho == 0 { &mut self.straight } else { &mut self.curved } += 1;
+        }
+    }
+
+    fn check(&self, header: &Header) -> Result<()> {
+        if (self.straight, self.curved) != (header.straight, header.curved) {
+            return Err(Error::format("clip counts", "differ from the clip curves in the file"));
+        }
+        let clips = self.straight + self.curved > 0;
+        let flag = |on: bool, bit: u32| if on { bit } else { 0 };
+        let required = flag(self.quadrics, HAS_QUADRICS) | flag(clips, HAS_CLIPS);
+        if header.required != required {
+            return Err(Error::format("required features", "differ from what the file holds"));
+        }
+        Ok(())
+    }
+}

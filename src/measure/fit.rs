@@ -1,0 +1,112 @@
+//! `fit`: how far the input's points lie from the splats that cover them.
+
+use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::point_grid::PointGrid;
+use crate::model::asset::{Accuracy, Asset};
+use crate::model::splat::Splat;
+
+/// What measuring the fit found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fit {
+    /// Over the points that some splat covers, model units.
+    pub accuracy: Accuracy,
+    /// Points that no splat covers within `reach`.
+    pub uncovered: usize,
+}
+
+/// Measures the distance of each point, along the normal `k`, to the nearest quadric among
+/// the splats that cover it: those in whose domain it lies, not cut away.
+///
+/// Points are in model units. A splat farther off than `reach` covers another sheet of the
+/// surface, not this point.
+#[must_use]
+pub fn fit(points: &[Vec3], asset: &Asset, reach: f64) -> Fit {
+    let grid = PointGrid::new(points);
+    let found: Vec<Vec<(u32, f64)>> =
+        asset.splats.par_iter().map(|splat| covered(splat, &grid, points, reach)).collect();
+    let mut best = vec![f64::INFINITY; points.len()];
+    for (point, distance) in found.into_iter().flatten() {
+        let best = &mut best[point as usize];
+        *best = best.min(distance);
+    }
+    let mut distances: Vec<f64> = best.into_iter().filter(|distance| distance.is_finite()).collect();
+    distances.par_sort_unstable_by(f64::total_cmp);
+    Fit { uncovered: points.len() - distances.len(), accuracy: accuracy(&distances) }
+}
+
+/// The points a splat covers within `reach`, with their distances.
+fn covered(splat: &Splat, grid: &PointGrid, points: &[Vec3], reach: f64) -> Vec<(u32, f64)> {
+    let (low, high) = bounds(splat, reach);
+    let conics: Vec<_> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+    grid.near(low, high)
+        .filter_map(|point| {
+            let local = splat.to_local(points[point as usize].as_dvec3());
+            let uv = local.truncate();
+            let distance = (local.z - splat.height(uv)).abs();
+            let inside = distance <= reach && splat.ellipse(uv) <= 1.0;
+            (inside && !conics.iter().any(|conic| conic.cuts(uv))).then_some((point, distance))
+        })
+        .collect()
+}
+
+/// A box that holds everything within `reach` of a splat along its normal.
+fn bounds(splat: &Splat, reach: f64) -> (DVec3, DVec3) {
+    let sagitta: DVec2 = splat.curvature * splat.radii * splat.radii;
+    let (low, high) = (sagitta.min_element().min(0.0) - reach, sagitta.max_element().max(0.0) + reach);
+    let [i, j, k] = [splat.axes.x_axis, splat.axes.y_axis, splat.axes.z_axis];
+    // Along a coordinate axis an ellipse reaches the length of its two projected radii.
+    let (u, v) = (i * splat.radii.x, j * splat.radii.y);
+    let across = (u * u + v * v).map(f64::sqrt);
+    (splat.center + (k * low).min(k * high) - across, splat.center + (k * low).max(k * high) + across)
+}
+
+/// Sums up sorted distances.
+fn accuracy(distances: &[f64]) -> Accuracy {
+    let Some(&max) = distances.last() else { return Accuracy::default() };
+    let count = distances.len();
+    let squares: f64 = distances.iter().map(|distance| distance * distance).sum();
+    // The least distance that at least 99 in a hundred points keep.
+    let p99 = distances[(count * 99).div_ceil(100) - 1];
+    Accuracy { rms: (squares / count as f64).sqrt(), p99, max }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::clip_curve::ClipCurve;
+    use crate::model::frame::Frame;
+    use glam::DMat3;
+
+    #[test]
+    fn planted_offsets_cuts_and_gaps_come_back() {
+        let splat = Splat {
+            center: DVec3::new(0.1, 0.0, -0.2),
+            axes: DMat3::from_rotation_x(0.5),
+            radii: DVec2::new(0.4, 0.3),
+            curvature: DVec2::new(0.8, -0.5),
+            // Cuts what lies below the chord along v = 0.
+            clips: vec![ClipCurve::chord(std::f64::consts::PI, 0.0)],
+            color: [255; 3],
+        };
+        let at = |u: f64, v: f64, off: f64| {
+            let uv = DVec2::new(u, v);
+            splat.to_model(uv.extend(splat.height(uv) + off)).as_vec3()
+        };
+        let mut points: Vec<Vec3> = (0..99).map(|n| at(f64::from(n) * 0.003, 0.05, 0.001)).collect();
+        points.push(at(0.1, 0.1, -0.004));
+        points.extend([at(0.1, -0.1, 0.0), at(0.3, 0.29, 0.0), at(0.0, 0.1, 0.02)]);
+        let asset = Asset {
+            frame: Frame::default(),
+            diagonal: 1.0,
+            max_error: 0.01,
+            fit: Accuracy::default(),
+            has_colors: false,
+            splats: vec![splat],
+        };
+        let found = fit(&points, &asset, 0.01);
+        assert_eq!(found.uncovered, 3, "one cut away, one beyond the rim, one out of reach");
+        assert!((found.accuracy.max - 0.004).abs() < 1e-6 && (found.accuracy.p99 - 0.001).abs() < 1e-6);
+    }
+}

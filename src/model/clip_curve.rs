@@ -1,0 +1,188 @@
+//! The clip curve: a rational quadratic Bézier curve of five numbers.
+//!
+//! Ivo 2020, sections 3.2 and 3.3. `P1` and `P3` lie on the ellipse's border at central
+//! angles `alpha1, alpha3`; `P2 = (x, y)` is free; the shape is `rho = w/(1+w)` in `[0, 1]`:
+//! 0 is the chord, 1/2 a parabola, 1 the control polygon (a corner).
+//!
+//! Cut away is the area between the border arc from `P1` to `P3`, counter-clockwise, and the
+//! curve: what lies to the right of the curve walked from `P1` to `P3`.
+
+use glam::DVec2;
+
+/// Five numbers that cut a splat, in its `(u, v)` plane and in model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClipCurve {
+    /// Central angle of `P1` on the ellipse, radians in `[0, 2π)`.
+    pub alpha1: f64,
+    /// Central angle of `P3`, radians in `[0, 2π)`.
+    pub alpha3: f64,
+    /// The free control point `P2`.
+    pub p2: DVec2,
+    /// Shape in `[0, 1]`; at 0 the curve is the chord and `p2` does not matter.
+    pub rho: f64,
+}
+
+/// The border point of an ellipse at a central angle.
+///
+/// `r(alpha) (cos alpha, sin alpha)` with
+/// `r = r_u r_v / sqrt((r_v cos)² + (r_u sin)²)`.
+#[must_use]
+pub fn border_point(alpha: f64, radii: DVec2) -> DVec2 {
+    let (sin, cos) = libm::sincos(alpha);
+    let r = radii.x * radii.y / libm::hypot(radii.y * cos, radii.x * sin);
+    r * DVec2::new(cos, sin)
+}
+
+/// Twice the signed area of the triangle `a, b, c`: positive when it turns left.
+#[must_use]
+pub fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+impl ClipCurve {
+    /// A straight cut along the chord from `alpha1` to `alpha3`.
+    #[must_use]
+    pub fn chord(alpha1: f64, alpha3: f64) -> Self {
+        Self { alpha1, alpha3, p2: DVec2::ZERO, rho: 0.0 }
+    }
+
+    /// Whether the curve is the chord, which needs two numbers instead of five.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.rho == 0.0
+    }
+
+    /// `P1` and `P3` on the border of an ellipse with these radii.
+    #[must_use]
+    pub fn ends(&self, radii: DVec2) -> (DVec2, DVec2) {
+        (border_point(self.alpha1, radii), border_point(self.alpha3, radii))
+    }
+
+    /// The control points and the shape, ready for many tests.
+    #[must_use]
+    pub fn conic(&self, radii: DVec2) -> Conic {
+        let (p1, p3) = self.ends(radii);
+        Conic { p1, p2: self.p2, p3, rho: self.rho }
+    }
+
+    /// Whether this curve cuts the point away.
+    #[must_use]
+    pub fn cuts(&self, uv: DVec2, radii: DVec2) -> bool {
+        self.conic(radii).cuts(uv)
+    }
+}
+
+/// A clip curve with its ends worked out: `P1, P2, P3` and `rho`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conic {
+    /// First point, on the ellipse's border.
+    pub p1: DVec2,
+    /// Control point.
+    pub p2: DVec2,
+    /// Last point, on the ellipse's border.
+    pub p3: DVec2,
+    /// Shape in `[0, 1]`.
+    pub rho: f64,
+}
+
+impl Conic {
+    /// Whether the point lies to the right of the curve.
+    ///
+    /// Free of division, root and threshold. With the signed areas
+    /// `l1 = [Q,P2,P3], l2 = [P1,Q,P3], l3 = [P1,P2,Q]` taken positive inside the triangle,
+    /// the bulge between chord and curve is where all three are positive and
+    /// `(1-rho)² l2² < 4 rho² l1 l3`. The *inner* region is the chord's far side from `P2`
+    /// together with the bulge; turning left at `P2` cuts the outer region, turning right
+    /// the inner one (Ivo 2020, Fig. 25). Where `[P1,P2,P3]` vanishes the chord decides.
+    #[must_use]
+    pub fn cuts(&self, q: DVec2) -> bool {
+        let chord = turn(self.p1, self.p3, q);
+        let area = turn(self.p1, self.p2, self.p3);
+        if self.rho == 0.0 || area == 0.0 {
+            return chord < 0.0;
+        }
+        let sign = area.signum();
+        let l1 = sign * turn(q, self.p2, self.p3);
+        let l2 = -sign * chord;
+        let l3 = sign * turn(self.p1, self.p2, q);
+        let (chordal, curved) = ((1.0 - self.rho) * l2, self.rho);
+        let bulge = l1 > 0.0 && l2 > 0.0 && l3 > 0.0 && chordal * chordal < 4.0 * curved * curved * l1 * l3;
+        let inner = l2 <= 0.0 || bulge;
+        if area > 0.0 { !inner } else { inner }
+    }
+
+    /// The point at parameter `t` in `[0, 1]`.
+    ///
+    /// With `w = rho/(1-rho)` both sides of the fraction are multiplied by `1-rho`, so that
+    /// `rho = 1` needs no special case except at its two ends.
+    #[must_use]
+    pub fn point(&self, t: f64) -> DVec2 {
+        let s = 1.0 - t;
+        let (b1, b2, b3) = ((1.0 - self.rho) * s * s, 2.0 * self.rho * s * t, (1.0 - self.rho) * t * t);
+        let weight = b1 + b2 + b3;
+        if weight > 0.0 {
+            (b1 * self.p1 + b2 * self.p2 + b3 * self.p3) / weight
+        } else if t < 0.5 {
+            self.p1
+        } else {
+            self.p3
+        }
+    }
+
+    /// `count + 1` points from `P1` to `P3`. At `rho = 1`, where the curve is the control
+    /// polygon, they walk its two legs.
+    pub fn points(&self, count: usize) -> impl Iterator<Item = DVec2> + '_ {
+        (0..=count).map(move |n| {
+            let t = n as f64 / count as f64;
+            if self.rho < 1.0 {
+                self.point(t)
+            } else if t < 0.5 {
+                self.p1.lerp(self.p2, 2.0 * t)
+            } else {
+                self.p2.lerp(self.p3, 2.0 * t - 1.0)
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const P1: DVec2 = DVec2::new(-1.0, 0.0);
+    const P3: DVec2 = DVec2::new(1.0, 0.0);
+
+    #[test]
+    fn the_curve_separates_kept_from_cut_for_every_shape_and_turn() {
+        for rho in [0.0, 0.1, 0.5, 0.9, 1.0] {
+            for side in [-0.8, 0.8] {
+                let conic = Conic { p1: P1, p2: DVec2::new(0.2, side), p3: P3, rho };
+                let middle = conic.point(0.5);
+                let step = DVec2::Y * 1e-9;
+                assert!(conic.cuts(middle - step), "right of the curve, rho {rho} side {side}");
+                assert!(!conic.cuts(middle + step), "left of the curve, rho {rho} side {side}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_quarter_circle_is_exact() {
+        // w = cos 45° makes the conic a circle (Farin, NURBS, 4.2).
+        let w = std::f64::consts::FRAC_1_SQRT_2;
+        let conic = Conic { p1: DVec2::X, p2: DVec2::ONE, p3: DVec2::Y, rho: w / (1.0 + w) };
+        for point in conic.points(32) {
+            assert!((point.length() - 1.0).abs() < 1e-15);
+        }
+        // It turns left, so the outer region is cut.
+        assert!(conic.cuts(DVec2::splat(0.7072)) && !conic.cuts(DVec2::splat(0.707)));
+    }
+
+    #[test]
+    fn ends_lie_on_the_border() {
+        let radii = DVec2::new(3.0, 0.003);
+        for n in 0..100 {
+            let point = border_point(f64::from(n) * 0.0628, radii);
+            assert!(((point / radii).length() - 1.0).abs() < 1e-12);
+        }
+    }
+}

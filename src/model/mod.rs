@@ -1,0 +1,9 @@
+//! What things are: the nouns that every room shares.
+
+pub mod asset;
+pub mod clip_curve;
+pub mod cloud;
+pub mod frame;
+pub mod mesh;
+pub mod polyline;
+pub mod splat;

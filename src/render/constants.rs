@@ -1,0 +1,90 @@
+//! The numbers that decide a case, in one place for both twins.
+//!
+//! The Rust twins use the constants; the WGSL twins get the same values as `const` lines
+//! written by [`wgsl`], so that neither can drift from the other.
+
+use crate::model::asset::Asset;
+
+/// Depth band of the attribute pass, in error bounds along the surface normal.
+///
+/// Two splats over the same input point lie within one error bound of it each; at their rims
+/// twice that is allowed. So a splat may pass 2 + 2 bounds behind another of the same surface.
+pub const BAND_ERRORS: f64 = 4.0;
+
+/// Least depth band, as a fraction of the diagonal: above the rounding of the 32-bit twin.
+pub const BAND_FLOOR: f64 = 2e-6;
+
+/// Least cosine between ray and normal by which the band is divided.
+///
+/// Near a silhouette the band along the ray would grow without bound and reach another
+/// surface.
+pub const COSINE_FLOOR: f64 = 0.1;
+
+/// Splats blend when their normals differ by less than this angle, degrees.
+///
+/// Below the default feature angle of 40 degrees, so that nothing blends across an edge, and
+/// well above what two splats of one smooth surface differ by.
+pub const AGREE_DEGREES: f64 = 30.0;
+
+/// Weight at the rim: not 0, so that a pixel whose only splat is seen at its rim has one.
+pub const RIM_WEIGHT: f64 = 1e-3;
+
+/// The screen bound is widened by this many pixels, above the rounding of the 32-bit twin.
+pub const BOUND_PAD: f64 = 1.0 / 64.0;
+
+/// Grey of the nearest and the farthest depth that the scene's bounding sphere allows.
+pub const DEPTH_GREY: [f64; 2] = [0.95, 0.1];
+
+/// Added to each component of a normal in [0, 1] before it becomes a byte. A component of 0
+/// would be 127.5 levels, a tie that the last bit decides; this is a fortieth of a level.
+pub const NORMAL_TIE: f64 = 1e-4;
+
+/// Linear colour of a surface without colours.
+pub const MATTE: [f64; 3] = [0.40, 0.41, 0.43];
+
+/// Linear colours of the four classes of [`class`] under [`super::Show::Kinds`]: flat blue,
+/// flat and clipped green, quadric orange, quadric and clipped red.
+pub const CLASS_COLORS: [[f64; 3]; CLASSES] =
+    [[0.10, 0.25, 0.75], [0.06, 0.50, 0.20], [0.85, 0.40, 0.05], [0.70, 0.06, 0.06]];
+
+/// Splats fall into this many classes, each with its own specialised pipeline on the GPU.
+pub const CLASSES: usize = 4;
+
+/// The class of a splat: 1 for clipped, plus 2 for a quadric.
+#[must_use]
+pub fn class(quadric: bool, clipped: bool) -> usize {
+    usize::from(clipped) + 2 * usize::from(quadric)
+}
+
+/// Depth band of an asset along the surface normal, in model units.
+#[must_use]
+pub fn band(asset: &Asset) -> f64 {
+    (BAND_ERRORS * asset.max_error).max(BAND_FLOOR * asset.diagonal)
+}
+
+/// Cosine of [`AGREE_DEGREES`].
+#[must_use]
+pub fn agree_cosine() -> f64 {
+    libm::cos(AGREE_DEGREES.to_radians())
+}
+
+/// The constants as WGSL `const` declarations.
+#[must_use]
+pub fn wgsl() -> String {
+    let scalars = [
+        ("COSINE_FLOOR", COSINE_FLOOR),
+        ("AGREE_COSINE", agree_cosine()),
+        ("RIM_WEIGHT", RIM_WEIGHT),
+        ("BOUND_PAD", BOUND_PAD),
+        ("NORMAL_TIE", NORMAL_TIE),
+        ("DEPTH_GREY_NEAR", DEPTH_GREY[0]),
+        ("DEPTH_GREY_FAR", DEPTH_GREY[1]),
+    ];
+    let mut text: String =
+        scalars.iter().map(|(name, value)| format!("const {name}: f32 = {value:?};\n")).collect();
+    let color = |c: &[f64; 3]| format!("vec3<f32>({:?}, {:?}, {:?})", c[0], c[1], c[2]);
+    text += &format!("const MATTE = {};\n", color(&MATTE));
+    let classes: Vec<String> = CLASS_COLORS.iter().map(color).collect();
+    text += &format!("const CLASS_COLORS = array<vec3<f32>, {CLASSES}>({});\n", classes.join(", "));
+    text
+}

@@ -1,0 +1,140 @@
+//! What the shaders read, byte for byte.
+
+use glam::{DVec3, Vec3};
+
+use super::source::{INDEX_BITS, show_number};
+use crate::model::asset::Asset;
+use crate::model::splat::{Kind, Splat};
+use crate::render::constants;
+use crate::render::eye::Eye;
+use crate::render::settings::Settings;
+use crate::render::splat::{linear_color, unit_conic};
+
+/// `Record` of `splat.wgsl`: one splat in 88 bytes, in model units.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SplatRecord {
+    center_high: [f32; 3],
+    center_low: [f32; 3],
+    i: [f32; 3],
+    j: [f32; 3],
+    shape: [f32; 4],
+    color: [f32; 3],
+    words: [u32; 3],
+}
+
+/// `Conic` of `clip.wgsl`, over the unit disc.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ConicRecord {
+    p1: [f32; 2],
+    p2: [f32; 2],
+    p3: [f32; 2],
+    rho: f32,
+    pad: f32,
+}
+
+/// `Eye` of `eye.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct EyeRecord {
+    right: [f32; 3],
+    unit: f32,
+    up: [f32; 3],
+    near: f32,
+    forward: [f32; 3],
+    anchor_depth: f32,
+    anchor_high: [f32; 3],
+    perspective: u32,
+    anchor_low: [f32; 3],
+    band: f32,
+    middle: [f32; 2],
+    depth_range: [f32; 2],
+    grey_range: [f32; 2],
+    show: u32,
+    shininess: f32,
+    light: [f32; 3],
+    ambient: f32,
+    background: [f32; 4],
+    diffuse: f32,
+    specular: f32,
+    wrap: f32,
+    pad: f32,
+}
+
+const _: () = assert!(size_of::<SplatRecord>() == 88);
+const _: () = assert!(size_of::<ConicRecord>() == 32);
+const _: () = assert!(size_of::<EyeRecord>() == 160);
+
+/// A 64-bit point as the sum of two 32-bit ones.
+fn split(point: DVec3) -> [[f32; 3]; 2] {
+    let high = point.as_vec3();
+    [high.to_array(), (point - high.as_dvec3()).as_vec3().to_array()]
+}
+
+/// The class of a splat, see [`constants::class`].
+pub fn class(splat: &Splat) -> usize {
+    constants::class(splat.kind() == Kind::Quadric, !splat.clips.is_empty())
+}
+
+/// The record of one splat; its conics are appended to the list.
+pub fn splat(splat: &Splat, index: usize, has_colors: bool, conics: &mut Vec<ConicRecord>) -> SplatRecord {
+    let first = conics.len() as u32;
+    conics.extend(splat.clips.iter().map(|clip| {
+        let conic = unit_conic(clip, splat.radii);
+        let [p1, p2, p3] = [conic.p1, conic.p2, conic.p3].map(|p| p.as_vec2().to_array());
+        ConicRecord { p1, p2, p3, rho: conic.rho as f32, pad: 0.0 }
+    }));
+    let [center_high, center_low] = split(splat.center);
+    let (radii, curvature) = (splat.radii.as_vec2(), splat.curvature.as_vec2());
+    let color: Vec3 = linear_color(splat, has_colors);
+    SplatRecord {
+        center_high,
+        center_low,
+        i: splat.axes.x_axis.as_vec3().to_array(),
+        j: splat.axes.y_axis.as_vec3().to_array(),
+        shape: [radii.x, radii.y, curvature.x, curvature.y],
+        color: color.to_array(),
+        words: [index as u32 | (class(splat) as u32) << INDEX_BITS, first, splat.clips.len() as u32],
+    }
+}
+
+impl EyeRecord {
+    /// A camera over an asset whose splats all lie within `radius` of the model's origin.
+    pub fn new(eye: &Eye, asset_radius: f64, radius: f64, band: f64, settings: &Settings) -> Self {
+        let anchor_depth = eye.to_view(DVec3::ZERO).z.max(0.0);
+        let [anchor_high, anchor_low] = split(eye.position + anchor_depth * eye.forward);
+        let relative = |range: [f64; 2]| range.map(|depth| (depth - anchor_depth) as f32);
+        let light = &settings.light;
+        Self {
+            right: eye.right.as_vec3().to_array(),
+            unit: eye.samples_per_unit().recip() as f32,
+            up: eye.up.as_vec3().to_array(),
+            near: (eye.near - anchor_depth) as f32,
+            forward: eye.forward.as_vec3().to_array(),
+            anchor_depth: anchor_depth as f32,
+            anchor_high,
+            perspective: u32::from(eye.perspective),
+            anchor_low,
+            band: band as f32,
+            middle: eye.middle().as_vec2().to_array(),
+            depth_range: relative(eye.depth_range(radius)),
+            grey_range: relative(eye.depth_range(asset_radius)),
+            show: show_number(settings.show),
+            shininess: light.shininess as f32,
+            light: DVec3::from(light.direction).normalize().as_vec3().to_array(),
+            ambient: light.ambient as f32,
+            background: settings.background.map(|byte| f32::from(byte) / 255.0),
+            diffuse: light.diffuse as f32,
+            specular: light.specular as f32,
+            wrap: light.wrap as f32,
+            pad: 0.0,
+        }
+    }
+}
+
+/// Radius of a sphere around the model's origin that holds every splat.
+pub fn reach(asset: &Asset) -> f64 {
+    let reach = |splat: &Splat| splat.center.length() + splat.bounding_radius();
+    asset.splats.iter().map(reach).fold(0.5 * asset.diagonal, f64::max)
+}

@@ -1,0 +1,154 @@
+//! An asset's buffers, sorted into classes.
+
+use std::ops::Range;
+
+use super::Gpu;
+use super::pipelines::{self, Layouts, SplatPipelines};
+use super::records::{self, ConicRecord, EyeRecord, SplatRecord};
+use super::source::{INDEX_BITS, Needs};
+use crate::error::{Error, Result};
+use crate::model::asset::Asset;
+use crate::model::frame::Frame;
+use crate::render::constants::{self, CLASSES};
+
+/// An asset on a device.
+#[derive(Debug)]
+pub struct Scene {
+    /// Where the model lies.
+    pub frame: Frame,
+    /// Half the diagonal, model units.
+    pub half_diagonal: f64,
+    /// Radius around the model's origin that holds every splat.
+    pub reach: f64,
+    /// Thickness of a surface.
+    pub band: f64,
+    /// Whether colours are blended.
+    pub colored: bool,
+    /// The splats, class by class.
+    pub splats: wgpu::Buffer,
+    /// The camera of the frame being drawn.
+    pub eye: wgpu::Buffer,
+    /// The classes that are not empty.
+    pub classes: Vec<Class>,
+    /// The shading pass.
+    pub shading: wgpu::RenderPipeline,
+    /// The camera alone, for the shading pass.
+    pub eye_group: wgpu::BindGroup,
+    /// Layout of the visible surfaces, for the attribute pass.
+    pub surfaces_layout: wgpu::BindGroupLayout,
+    /// Layout of all that the shading pass reads.
+    pub shading_layout: wgpu::BindGroupLayout,
+}
+
+/// The splats of one kind of record, and how to draw them.
+#[derive(Debug)]
+pub struct Class {
+    /// Their places in the buffer.
+    pub instances: Range<u32>,
+    /// The camera, and the conics if any.
+    pub group: wgpu::BindGroup,
+    /// The passes over them.
+    pub pipelines: SplatPipelines,
+}
+
+impl Scene {
+    /// Moves an asset to a device.
+    pub fn new(gpu: &Gpu, asset: &Asset) -> Result<Self> {
+        let Sorted { records, conics, ranges } = Sorted::new(asset)?;
+        let limits = gpu.device.limits();
+        let bytes = size_of_val(records.as_slice()) as u64;
+        gpu.within("the size of the splats in bytes", bytes, limits.max_buffer_size)?;
+        let bytes = size_of_val(conics.as_slice()) as u64;
+        gpu.within("the size of the clip curves in bytes", bytes, limits.max_storage_buffer_binding_size)?;
+        let splats = buffer(gpu, "splats", bytemuck::cast_slice(&records), wgpu::BufferUsages::VERTEX);
+        let conics = buffer(gpu, "conics", bytemuck::cast_slice(&conics), wgpu::BufferUsages::STORAGE);
+        let eye = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("eye"),
+            size: size_of::<EyeRecord>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layouts = Layouts::new(gpu, asset.has_colors);
+        let classes = ranges.into_iter().enumerate().filter(|(_, range)| !range.is_empty());
+        let classes = classes
+            .map(|(class, instances)| {
+                let needs =
+                    Needs { quadric: class & 2 != 0, clipped: class & 1 != 0, colored: asset.has_colors };
+                let (eye, conics) = (eye.as_entire_binding(), conics.as_entire_binding());
+                let group = if needs.clipped {
+                    group(gpu, &layouts.clipped, &[eye, conics])
+                } else {
+                    group(gpu, &layouts.plain, &[eye])
+                };
+                Class { instances, group, pipelines: SplatPipelines::new(gpu, &layouts, needs) }
+            })
+            .collect();
+        let eye_group = group(gpu, &layouts.plain, &[eye.as_entire_binding()]);
+        Ok(Self {
+            frame: asset.frame,
+            half_diagonal: 0.5 * asset.diagonal,
+            reach: records::reach(asset),
+            band: constants::band(asset),
+            colored: asset.has_colors,
+            splats,
+            eye_group,
+            eye,
+            classes,
+            shading: pipelines::shading(gpu, &layouts, asset.has_colors),
+            surfaces_layout: layouts.surfaces,
+            shading_layout: layouts.shading,
+        })
+    }
+}
+
+/// The records, class by class and in the asset's order within each, with each class's range.
+struct Sorted {
+    records: Vec<SplatRecord>,
+    conics: Vec<ConicRecord>,
+    ranges: [Range<u32>; CLASSES],
+}
+
+impl Sorted {
+    fn new(asset: &Asset) -> Result<Self> {
+        if asset.splats.len() >= 1 << INDEX_BITS {
+            let count = asset.splats.len();
+            return Err(Error::Device(format!(
+                "{count} splats are more than 2^{INDEX_BITS}; use the cpu device"
+            )));
+        }
+        let mut ranges: [Range<u32>; CLASSES] = Default::default();
+        let (mut records, mut conics) = (Vec::with_capacity(asset.splats.len()), Vec::new());
+        for (class, range) in ranges.iter_mut().enumerate() {
+            let start = records.len() as u32;
+            let members = asset.splats.iter().enumerate().filter(|(_, splat)| records::class(splat) == class);
+            records.extend(members.map(|(n, splat)| records::splat(splat, n, asset.has_colors, &mut conics)));
+            *range = start..records.len() as u32;
+        }
+        Ok(Self { records, conics, ranges })
+    }
+}
+
+/// A filled buffer. An empty one still holds one record: a binding may not be empty.
+fn buffer(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.len().max(size_of::<ConicRecord>()) as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+/// A bind group of these resources, numbered from 0.
+pub fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}

@@ -1,0 +1,202 @@
+// One splat, from its record to its fragments; twin of `splat.rs`.
+
+struct Record {
+    @location(0) center_high: vec3<f32>,
+    @location(1) center_low: vec3<f32>,
+    @location(2) i: vec3<f32>,
+    @location(3) j: vec3<f32>,
+    // r_u, r_v, a, b
+    @location(4) shape: vec4<f32>,
+    @location(5) color: vec3<f32>,
+    // index and class, first conic, number of conics
+    @location(6) words: vec3<u32>,
+}
+
+// The splat in view coordinates, the same for all its fragments.
+struct Cap {
+    @builtin(position) position: vec4<f32>,
+    // and the bounding radius
+    @location(0) @interpolate(flat) center: vec4<f32>,
+    @location(1) @interpolate(flat) i: vec3<f32>,
+    @location(2) @interpolate(flat) j: vec3<f32>,
+    @location(3) @interpolate(flat) k: vec3<f32>,
+    @location(4) @interpolate(flat) shape: vec4<f32>,
+    @location(5) @interpolate(flat) words: vec3<u32>,
+//#if COLORED
+    @location(6) @interpolate(flat) color: vec3<f32>,
+//#end
+}
+
+// Above the rounding of 32 bits between a splat's numbers and its rim.
+const REACH_MARGIN: f32 = 1.0001;
+
+// A rectangle sized by the splat's bound: corners 0 to 3 of a triangle strip.
+@vertex
+fn vertex(record: Record, @builtin(vertex_index) corner: u32) -> Cap {
+    var cap: Cap;
+    let center = to_view(record.center_high, record.center_low);
+    cap.i = turn(record.i);
+    cap.j = turn(record.j);
+    cap.k = turn(cross(record.i, record.j));
+    cap.shape = record.shape;
+    cap.words = record.words;
+//#if COLORED
+    cap.color = record.color;
+//#end
+    let radii = record.shape.xy;
+//#if QUADRIC
+    let sagitta = record.shape.zw * radii * radii;
+    let heights = vec2<f32>(min(min(sagitta.x, sagitta.y), 0.0), max(max(sagitta.x, sagitta.y), 0.0));
+//#else
+    let heights = vec2<f32>(0.0);
+//#end
+    let tallest = max(heights.y, -heights.x);
+    cap.center = vec4<f32>(center, length(vec2<f32>(max(radii.x, radii.y), tallest)) * REACH_MARGIN);
+    let shown = bound(center, radii.x * cap.i, radii.y * cap.j, cap.k, heights);
+    // Outside the clip volume when nothing of it shows.
+    cap.position = vec4<f32>(2.0, 2.0, 0.0, 1.0);
+    if shown.shown {
+        let size = 2.0 * eye.middle;
+        let low = clamp(shown.low, vec2<f32>(0.0), size);
+        let high = clamp(shown.high, vec2<f32>(0.0), size);
+        let place = select(low, high, vec2<bool>((corner & 1u) != 0u, (corner & 2u) != 0u));
+        let ndc = (place / eye.middle - 1.0) * vec2<f32>(1.0, -1.0);
+        cap.position = vec4<f32>(ndc, 0.0, 1.0);
+    }
+    return cap;
+}
+
+struct Hit {
+    found: bool,
+    depth: f32,
+    uv: vec2<f32>,
+    ellipse: f32,
+}
+
+fn to_local(cap: Cap, direction: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(cap.i, direction), dot(cap.j, direction), dot(cap.k, direction));
+}
+
+// The place at a ray's parameter, if the splat is there.
+fn covered(cap: Cap, ray: LocalRay, s: f32) -> Hit {
+    let uv = (ray.origin + s * ray.direction).xy;
+    let unit = uv / cap.shape.xy;
+    var hit = Hit(false, cap.center.z + s, uv, dot(unit, unit));
+    hit.found = s <= cap.center.w && hit.depth >= eye.near && hit.ellipse <= 1.0;
+//#if CLIPPED
+    if hit.found {
+        hit.found = !clipped_away(cap.words.y, cap.words.z, unit);
+    }
+//#end
+    return hit;
+}
+
+// The nearest hit in front of the near plane.
+fn hit(cap: Cap, ray: Ray) -> Hit {
+    let lateral = ray_at(ray, cap.center.z) - cap.center.xy;
+    let local = LocalRay(to_local(cap, vec3<f32>(lateral, 0.0)), to_local(cap, vec3<f32>(ray.slope, 1.0)));
+//#if QUADRIC
+    let s = roots(cap.shape.zw, local, cap.center.w);
+    let first = covered(cap, local, s.x);
+    if first.found {
+        return first;
+    }
+    return covered(cap, local, s.y);
+//#else
+    return covered(cap, local, root(local, cap.center.w));
+//#end
+}
+
+// The unit normal at a hit, turned towards the eye.
+fn normal_at(cap: Cap, uv: vec2<f32>, direction: vec3<f32>) -> vec3<f32> {
+//#if QUADRIC
+    let slope = -2.0 * cap.shape.zw * uv;
+    return face(normalize(cap.i * slope.x + cap.j * slope.y + cap.k), direction);
+//#else
+    return face(cap.k, direction);
+//#end
+}
+
+struct Visible {
+    @builtin(frag_depth) depth: f32,
+    // Unit normal and depth.
+    @location(0) surface: vec4<f32>,
+    // Index and class, plus 1 so that 0 is nothing.
+    @location(1) word: u32,
+}
+
+// Pass 1: the nearest hit.
+@fragment
+fn visibility(cap: Cap) -> Visible {
+    let ray = ray_through(cap.position.xy);
+    let hit = hit(cap, ray);
+    if !hit.found {
+        discard;
+    }
+    let direction = vec3<f32>(ray.slope, 1.0);
+    let along = (hit.depth - eye.depth_range.x) / (eye.depth_range.y - eye.depth_range.x);
+    return Visible(along, vec4<f32>(normal_at(cap, hit.uv, direction), hit.depth), cap.words.x + 1u);
+}
+
+@group(1) @binding(0) var surfaces: texture_2d<f32>;
+
+struct Sums {
+    // Weighted normal, and the weight.
+    @location(0) normal: vec4<f32>,
+//#if COLORED
+    @location(1) color: vec4<f32>,
+//#end
+}
+
+// The hit of a splat that belongs to the visible surface: within the band behind the nearest
+// hit, and facing the same way.
+struct Part {
+    found: bool,
+    ellipse: f32,
+    normal: vec3<f32>,
+}
+
+fn part(cap: Cap) -> Part {
+    let ray = ray_through(cap.position.xy);
+    let visible = textureLoad(surfaces, vec2<u32>(cap.position.xy), 0);
+    let hit = hit(cap, ray);
+    let direction = vec3<f32>(ray.slope, 1.0);
+    if !hit.found || hit.depth > visible.w + depth_band(visible.xyz, direction) {
+        return Part(false, 0.0, vec3<f32>(0.0));
+    }
+    let normal = normal_at(cap, hit.uv, direction);
+    return Part(dot(normal, visible.xyz) >= AGREE_COSINE, hit.ellipse, normal);
+}
+
+// Pass 2: the weighted sums over the visible surface.
+@fragment
+fn attributes(cap: Cap) -> Sums {
+    let part = part(cap);
+    if !part.found {
+        discard;
+    }
+    let weight = weight(part.ellipse);
+    var sums: Sums;
+    sums.normal = vec4<f32>(weight * part.normal, weight);
+//#if COLORED
+    sums.color = vec4<f32>(weight * cap.color, weight);
+//#end
+    return sums;
+}
+
+struct Identity {
+    // Half the ellipse's value: the least wins, and all are below the cleared depth.
+    @builtin(frag_depth) order: f32,
+    @location(0) word: u32,
+}
+
+// Only for pictures that show identities: of the visible surface's splats, the one seen
+// nearest its centre.
+@fragment
+fn identity(cap: Cap) -> Identity {
+    let part = part(cap);
+    if !part.found {
+        discard;
+    }
+    return Identity(0.5 * part.ellipse, cap.words.x + 1u);
+}

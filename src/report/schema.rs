@@ -1,0 +1,241 @@
+//! The parts of a report, as `docs/report-schema.md` documents them.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::memory;
+use crate::bake::StageTime;
+use crate::format::{self, ChunkInfo, FileInfo};
+use crate::model::asset::Asset;
+
+/// What was baked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Input {
+    /// The file, as given.
+    pub path: String,
+    /// `mesh` or `cloud`.
+    pub kind: String,
+    /// Points or vertices read.
+    pub points: u64,
+    /// Triangles read; 0 for a cloud.
+    pub triangles: u64,
+    /// Points left out because a coordinate was NaN or infinite.
+    pub dropped_points: u64,
+    /// Triangles left out because they are degenerate or used a dropped point.
+    pub dropped_triangles: u64,
+    /// Whether the input has normals.
+    pub normals: bool,
+    /// Whether the input has colours.
+    pub colors: bool,
+    /// Why the colours were left out; `None` if they were kept.
+    pub colors_left_out: Option<String>,
+    /// Mesh edges taken for feature edges, found or matched; 0 for a cloud.
+    pub feature_edges: u64,
+    /// Segments of the feature lines that were given; `None` if none were.
+    pub line_segments: Option<u64>,
+    /// Share of the given lines' length that was found on the mesh; `None` without lines.
+    pub lines_matched: Option<f64>,
+}
+
+/// How it was baked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    /// The error bound as given: a fraction of the diagonal, or input units.
+    pub max_error: f64,
+    /// `diagonal` or `input`: what `max_error` is measured in.
+    pub max_error_unit: String,
+    /// `auto`, `none`, or the file of the feature lines.
+    pub edges: String,
+    /// Dihedral angle in degrees from which a mesh edge is a feature edge.
+    pub edge_angle: f64,
+    /// 1 to 9.
+    pub effort: u8,
+    /// `auto`, `keep` or `estimate`.
+    pub normals: String,
+    /// `auto`, `keep` or `drop`.
+    pub color: String,
+}
+
+/// How the splats were chosen, with every case in which a fit fell back to less.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Points of the surface that the splats were fitted to.
+    pub samples: u64,
+    /// Candidates grown.
+    pub candidates: u64,
+    /// Splats dropped because others cover all that they cover.
+    pub redundant: u64,
+    /// Pieces of surface that only a splat of their own could cover.
+    pub last_resorts: u64,
+    /// Splats whose points did not determine a whole quadric.
+    pub low_rank: u64,
+}
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct File {
+    /// Where it is, as given.
+    pub path: String,
+    /// Version of the format.
+    pub version: u16,
+    /// Feature bits a reader must know.
+    pub required_features: u32,
+    /// Feature bits a reader may ignore.
+    pub optional_features: u32,
+    /// Bytes in all.
+    pub bytes: u64,
+    /// Bytes of header and table of chunks; with the chunks' coded bytes they make all.
+    pub head_bytes: u64,
+    /// The chunks in the order of the file.
+    pub chunks: Vec<Chunk>,
+    /// Chunks that the file does without.
+    pub absent: Vec<Absent>,
+}
+
+impl File {
+    /// From what the format says of a file.
+    #[must_use]
+    pub fn new(path: &Path, info: &FileInfo) -> Self {
+        let chunk = |chunk: &ChunkInfo| Chunk {
+            name: chunk.id.clone(),
+            coder: chunk.coder.clone(),
+            raw_bytes: chunk.raw_bytes,
+            coded_bytes: chunk.coded_bytes,
+        };
+        let absent = |absent: &format::Absent| Absent {
+            name: absent.id.clone(),
+            what: absent.what.clone(),
+            reason: absent.why.clone(),
+        };
+        Self {
+            path: path.display().to_string(),
+            version: info.version,
+            required_features: info.required_features,
+            optional_features: info.optional_features,
+            bytes: info.bytes,
+            head_bytes: info.head_bytes,
+            chunks: info.chunks.iter().map(chunk).collect(),
+            absent: info.absent.iter().map(absent).collect(),
+        }
+    }
+}
+
+/// One chunk of the file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chunk {
+    /// Its four characters.
+    pub name: String,
+    /// `zstd` or `none`.
+    pub coder: String,
+    /// Bytes decoded.
+    pub raw_bytes: u64,
+    /// Bytes in the file.
+    pub coded_bytes: u64,
+}
+
+/// A chunk that the file does without.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Absent {
+    /// Its four characters.
+    pub name: String,
+    /// What it would hold.
+    pub what: String,
+    /// Why it is not there.
+    pub reason: String,
+}
+
+/// Where the model lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Model {
+    /// Centre of the bounding box, input units.
+    pub origin: [f64; 3],
+    /// One model unit is this power of two of input units.
+    pub exponent: i32,
+    /// Diagonal of the bounding box, input units.
+    pub diagonal: f64,
+}
+
+/// Bytes beside what they stand for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Density {
+    /// Bytes of the file for each splat.
+    pub bytes_per_splat: f64,
+    /// Bytes of the file for each input point.
+    pub bytes_per_point: Option<f64>,
+}
+
+/// The error bound and what was achieved, as fractions of the bounding box's diagonal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// The bound that the bake was asked to keep.
+    pub budget: f64,
+    /// Distances of the input's points to the splats, measured on the decoded file.
+    pub fit: Fit,
+    /// Whether `fit.max` is within `budget`.
+    pub within_budget: bool,
+}
+
+/// Distances of the input's points to the splats that cover them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// Root mean square.
+    pub rms: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// Time, memory and threads of the bake.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Each stage in order.
+    pub stages: Vec<StageTime>,
+    /// Seconds on the clock over all stages.
+    pub wall_seconds: f64,
+    /// Seconds of processor time over all stages and threads.
+    pub cpu_seconds: f64,
+    /// Greatest resident memory of the process; `None` where the system does not say.
+    pub peak_bytes: Option<u64>,
+    /// Threads of the pool.
+    pub threads: u64,
+}
+
+impl Run {
+    /// Sums the stages. Those of one name, such as an `encode` before and after measuring,
+    /// become one at the place of the first.
+    #[must_use]
+    pub fn of_stages(parts: Vec<StageTime>, threads: usize) -> Self {
+        let mut stages: Vec<StageTime> = Vec::with_capacity(parts.len());
+        for part in parts {
+            match stages.iter_mut().find(|stage| stage.name == part.name) {
+                Some(stage) => {
+                    stage.wall_seconds += part.wall_seconds;
+                    stage.cpu_seconds += part.cpu_seconds;
+                }
+                None => stages.push(part),
+            }
+        }
+        let wall_seconds = stages.iter().map(|stage| stage.wall_seconds).sum();
+        let cpu_seconds = stages.iter().map(|stage| stage.cpu_seconds).sum();
+        Self { stages, wall_seconds, cpu_seconds, peak_bytes: memory::peak_bytes(), threads: threads as u64 }
+    }
+}
+
+impl Model {
+    pub(super) fn of(asset: &Asset) -> Self {
+        let frame = &asset.frame;
+        let diagonal = asset.diagonal * frame.scale();
+        Self { origin: frame.origin.into(), exponent: frame.exponent, diagonal }
+    }
+}
+
+impl Accuracy {
+    pub(super) fn of(asset: &Asset) -> Self {
+        // An asset of one point has no diagonal: its errors are zero, not infinite.
+        let share = |length: f64| if asset.diagonal > 0.0 { length / asset.diagonal } else { 0.0 };
+        let fit = Fit { rms: share(asset.fit.rms), p99: share(asset.fit.p99), max: share(asset.fit.max) };
+        Self { budget: share(asset.max_error), fit, within_budget: asset.fit.max <= asset.max_error }
+    }
+}

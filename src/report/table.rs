@@ -1,0 +1,122 @@
+//! A report as a table for people.
+
+use std::fmt::Write as _;
+
+use super::{Choice, File, Report, Run};
+
+impl Report {
+    /// Lines of plain text, ending in a line break.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut text = Table::default();
+        self.summary(&mut text);
+        text.chunks(&self.file);
+        for thing in &self.optional {
+            let reason =
+                thing.reason.as_deref().map_or_else(|| "yes".into(), |reason| format!("no: {reason}"));
+            text.row(&thing.name.replace('_', " "), reason);
+        }
+        if let Some(choice) = &self.choice {
+            text.choice(choice);
+        }
+        if let Some(run) = &self.run {
+            text.run(run);
+        }
+        text.0
+    }
+
+    fn summary(&self, text: &mut Table) {
+        let (file, counts, error, model) = (&self.file, &self.counts, &self.error, &self.model);
+        text.row("file", format!("{} (.qsplat version {})", file.path, file.version));
+        if let Some(input) = &self.input {
+            let triangles =
+                if input.triangles > 0 { format!(", {} triangles", input.triangles) } else { String::new() };
+            text.row("input", format!("{} ({}, {} points{triangles})", input.path, input.kind, input.points));
+        }
+        let per_point = self.density.bytes_per_point.map_or(String::new(), |n| format!(", {n:.2} a point"));
+        text.row("bytes", format!("{} ({:.1} a splat{per_point})", file.bytes, self.density.bytes_per_splat));
+        text.row(
+            "splats",
+            format!(
+                "{} ({} flat, {} quadric, {} clipped)",
+                counts.splats, counts.flat, counts.quadric, counts.clipped
+            ),
+        );
+        text.row(
+            "clip curves",
+            format!("{} curved, {} straight", counts.curved_clips, counts.straight_clips),
+        );
+        let fit = &error.fit;
+        text.row(
+            "fit",
+            format!("rms {:.2e}, p99 {:.2e}, max {:.2e} of the diagonal", fit.rms, fit.p99, fit.max),
+        );
+        let kept = if error.within_budget { "kept" } else { "NOT kept" };
+        text.row("budget", format!("{:.2e} of the diagonal, {kept}", error.budget));
+        let [x, y, z] = model.origin;
+        text.row(
+            "box",
+            format!("centre ({x:.6}, {y:.6}, {z:.6}), diagonal {:.6} input units", model.diagonal),
+        );
+    }
+}
+
+/// Text in two columns.
+#[derive(Default)]
+struct Table(String);
+
+impl Table {
+    fn row(&mut self, name: &str, value: impl AsRef<str>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "{name:<14}{}", value.as_ref());
+    }
+
+    fn chunks(&mut self, file: &File) {
+        self.row("head", format!("{:<10} {:>10} bytes", "", file.head_bytes));
+        for (number, chunk) in file.chunks.iter().enumerate() {
+            let name = if number == 0 { "chunks" } else { "" };
+            self.row(
+                name,
+                format!(
+                    "{:<10} {:>10} bytes, {:>10} decoded",
+                    chunk.name, chunk.coded_bytes, chunk.raw_bytes
+                ),
+            );
+        }
+    }
+
+    fn choice(&mut self, choice: &Choice) {
+        let Choice { samples, candidates, redundant, last_resorts, low_rank } = choice;
+        self.row(
+            "chosen from",
+            format!("{candidates} candidates over {samples} samples, {redundant} redundant"),
+        );
+        self.row(
+            "fell back",
+            format!("{low_rank} fits of lower order, {last_resorts} pieces with a splat of their own"),
+        );
+    }
+
+    fn run(&mut self, run: &Run) {
+        for (number, stage) in run.stages.iter().enumerate() {
+            let name = if number == 0 { "stages" } else { "" };
+            self.row(
+                name,
+                format!(
+                    "{:<10} {:>8.3} s, {:>8.3} s processor",
+                    stage.name, stage.wall_seconds, stage.cpu_seconds
+                ),
+            );
+        }
+        let memory = run
+            .peak_bytes
+            .map_or(String::new(), |bytes| format!(", {:.0} MiB at most", bytes as f64 / f64::from(1 << 20)));
+        self.row(
+            "in all",
+            format!(
+                "{:.3} s, {:.3} s processor on {} threads{memory}",
+                run.wall_seconds, run.cpu_seconds, run.threads
+            ),
+        );
+    }
+}

@@ -1,0 +1,167 @@
+//! The schema against its document, and the reasons against what they say.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::BTreeSet;
+
+use glam::{DMat3, DVec2, DVec3};
+use serde_json::Value;
+
+use super::*;
+use crate::bake::StageTime;
+use crate::model::asset;
+use crate::model::clip_curve::ClipCurve;
+use crate::model::frame::Frame;
+use crate::model::splat::Splat;
+
+fn asset_of(curvature: DVec2, clips: Vec<ClipCurve>) -> Asset {
+    let radii = DVec2::new(0.5, 0.3);
+    let splat =
+        Splat { center: DVec3::ZERO, axes: DMat3::IDENTITY, radii, curvature, clips, color: [255; 3] };
+    let frame = Frame { origin: DVec3::new(1.0, 2.0, 3.0), exponent: 2 };
+    let fit = asset::Accuracy { rms: 1e-4, p99: 2e-4, max: 3e-4 };
+    Asset { frame, diagonal: 2.0, max_error: 1e-3, fit, has_colors: false, splats: vec![splat; 4] }
+}
+
+fn file() -> File {
+    let chunks = vec![Chunk { name: "POSN".into(), coder: "zstd".into(), raw_bytes: 48, coded_bytes: 30 }];
+    let absent =
+        vec![Absent { name: "COLR".into(), what: "colours".into(), reason: "the splats have none".into() }];
+    File {
+        path: "a.qsplat".into(),
+        version: 1,
+        required_features: 3,
+        optional_features: 0,
+        bytes: 200,
+        head_bytes: 170,
+        chunks,
+        absent,
+    }
+}
+
+fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
+    let input = Input {
+        path: "a.ply".into(),
+        kind: "mesh".into(),
+        points: 50,
+        triangles: 96,
+        dropped_points: 1,
+        dropped_triangles: 2,
+        normals: false,
+        colors: true,
+        colors_left_out: Some(colors_left_out.into()),
+        feature_edges,
+        line_segments: None,
+        lines_matched: None,
+    };
+    let options = Options {
+        max_error: 1e-3,
+        max_error_unit: "diagonal".into(),
+        edges: edges.into(),
+        edge_angle: 40.0,
+        effort: 5,
+        normals: "auto".into(),
+        color: "auto".into(),
+    };
+    let stage = |name: &str, wall_seconds| StageTime {
+        name: name.into(),
+        wall_seconds,
+        cpu_seconds: 2.0 * wall_seconds,
+    };
+    let run = Run::of_stages(vec![stage("read", 0.25), stage("sample", 0.375), stage("read", 0.125)], 2);
+    let choice = Choice { samples: 900, candidates: 20, redundant: 3, last_resorts: 1, low_rank: 2 };
+    Origin { input, options, choice, run }
+}
+
+fn full() -> Report {
+    Report::new(&asset_of(DVec2::ZERO, vec![]), file(), Some(origin("auto", "dropped as asked", 0)))
+}
+
+/// Every key as a path: `file.chunks[].name`.
+fn paths(value: &Value, at: &str, into: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
+                into.insert(path.clone());
+                paths(value, &path, into);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| paths(item, &format!("{at}[]"), into)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_is_documented_and_nothing_else() {
+    let mut written = BTreeSet::new();
+    paths(&serde_json::to_value(full()).unwrap(), "", &mut written);
+    let document = include_str!("../../docs/report-schema.md");
+    let rows = document.lines().filter_map(|line| line.strip_prefix("| `"));
+    let documented: BTreeSet<String> =
+        rows.filter_map(|row| row.split('`').next()).map(str::to_owned).collect();
+    assert_eq!(documented, written);
+    assert!(document.contains(SCHEMA));
+}
+
+#[test]
+fn a_report_survives_its_json() {
+    let report = full();
+    let back: Report = serde_json::from_str(&report.json().unwrap()).unwrap();
+    assert_eq!(back, report);
+}
+
+#[test]
+fn what_a_file_cannot_know_is_null() {
+    let value = serde_json::to_value(Report::new(&asset_of(DVec2::ONE, vec![]), file(), None)).unwrap();
+    for key in ["input", "options", "choice", "run"] {
+        assert!(value[key].is_null(), "{key}");
+    }
+    assert!(value["density"]["bytes_per_point"].is_null());
+}
+
+#[test]
+fn numbers_are_fractions_of_the_diagonal() {
+    let report = full();
+    assert!((report.error.fit.max - 1.5e-4).abs() < 1e-18 && (report.error.budget - 5e-4).abs() < 1e-18);
+    assert!(report.error.within_budget);
+    assert!((report.model.diagonal - 8.0).abs() < 1e-12, "input units");
+    assert!((report.density.bytes_per_splat - 50.0).abs() < 1e-12);
+    assert_eq!(report.density.bytes_per_point, Some(4.0));
+    let run = report.run.unwrap();
+    assert_eq!((run.stages.len(), run.stages[0].name.as_str()), (2, "read"), "stages of one name are one");
+    assert!((run.stages[0].wall_seconds - 0.375).abs() < 1e-12);
+    assert!((run.wall_seconds - 0.75).abs() < 1e-12 && (run.cpu_seconds - 1.5).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_left_out_says_why() {
+    let reason = |report: &Report, name: &str| {
+        let thing = report.optional.iter().find(|thing| thing.name == name).unwrap();
+        assert_eq!(thing.present, thing.reason.is_none(), "{name}");
+        thing.reason.clone().unwrap_or_default()
+    };
+    let report = full();
+    assert!(reason(&report, "curvature").contains("flat"));
+    assert!(reason(&report, "clips").contains("no feature lines"));
+    assert!(reason(&report, "colors").contains("as asked"));
+    let off = Report::new(
+        &asset_of(DVec2::ONE, vec![]),
+        file(),
+        Some(origin("none", "the input is of one colour", 0)),
+    );
+    assert!(reason(&off, "clips").contains("--edges none"));
+    assert!(reason(&off, "colors").contains("one colour"));
+    assert_eq!(reason(&off, "curvature"), "");
+    let straight = Report::new(&asset_of(DVec2::ONE, vec![ClipCurve::chord(0.0, 1.0)]), file(), None);
+    assert_eq!(reason(&straight, "clips"), "");
+    assert!(reason(&straight, "curved_clips").contains("straight"));
+}
+
+#[test]
+fn the_table_names_what_matters() {
+    let table = full().table();
+    for part in ["a.qsplat", "a.ply", "4 (4 flat", "max 1.50e-4", "POSN", "sample", "kept"] {
+        assert!(table.contains(part), "{part} is missing in\n{table}");
+    }
+}

@@ -1,0 +1,182 @@
+//! Whether a domain has the surface below it all around its rim.
+//!
+//! The walk over the surface tells where the surface is near, not where it is missing: where
+//! it folds away inside an ellipse narrower than its triangles, the far end of the ellipse
+//! would stand out into the air.
+
+use glam::{DVec2, DVec3};
+
+use super::grow::Grower;
+use super::region::Region;
+use crate::analyse::surface::Surface;
+use crate::fit::pose::Pose;
+use crate::model::clip_curve::{ClipCurve, Conic, border_point, turn};
+
+/// Fewest and most places looked at around the rim.
+const PLACES: (f64, f64) = (16.0, 192.0);
+
+/// Between these, places lie this many rim budgets apart: what stands out between two of
+/// them stands out by little.
+const APART: f64 = 3.0;
+
+/// Most places looked at over a cloud.
+const MOST_PLACES: f64 = 1024.0;
+
+/// Directions in which a place is compared with its surroundings.
+const AROUND: usize = 8;
+
+/// A cloud's surface is there if a point of it lies within this many of its margins, and the
+/// domain's pad. Every place of the surface has a point within one, but that point need not
+/// be joined to those inside the domain.
+const CLOUD_REACH: f64 = 1.5;
+
+/// Whether, at every place around the rim that is not cut away, the surface lies within the
+/// budget for rims.
+#[must_use]
+pub fn backed(
+    grower: &Grower,
+    pose: &Pose,
+    outer: DVec2,
+    curvature: DVec2,
+    clips: &[ClipCurve],
+    region: &Region,
+) -> bool {
+    let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(outer)).collect();
+    let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
+    let reach = grower.budget.clip.outset + 2.0 * grower.budget.clip.miss;
+    // Curves pass somewhat outside their lines: just inside a curve there is no surface.
+    let beside_cut = |uv: DVec2| directions(AROUND).any(|direction| cut(uv + reach * direction));
+    let below = Below::new(grower.surface, pose, region);
+    let perimeter = std::f64::consts::PI * outer.element_sum();
+    let count = (perimeter / (APART * grower.budget.rim)).clamp(PLACES.0, PLACES.1) as usize;
+    if !below.points.is_empty() {
+        let near = below.near_rim(outer, grower.budget.pad);
+        let places = directions(near.len()).map(|direction| direction * outer).zip(near);
+        return places.filter(|&(uv, near)| !near && !cut(uv)).all(|(uv, _)| beside_cut(uv));
+    }
+    let places = directions(count).map(|direction| direction * outer).chain(between_cuts(clips, outer));
+    places.filter(|&uv| !cut(uv)).all(|uv| {
+        let height = (curvature * uv * uv).element_sum();
+        below.near(uv, height, grower.budget.rim) || beside_cut(uv)
+    })
+}
+
+/// The middles of the border's arcs between the ends of clip curves, so that no arc that is
+/// kept goes unseen.
+fn between_cuts(clips: &[ClipCurve], radii: DVec2) -> impl Iterator<Item = DVec2> {
+    let mut ends: Vec<f64> = clips.iter().flat_map(|clip| [clip.alpha1, clip.alpha3]).collect();
+    ends.sort_unstable_by(f64::total_cmp);
+    let wrapped = ends.first().map(|first| first + std::f64::consts::TAU);
+    let following: Vec<f64> = ends.iter().skip(1).copied().chain(wrapped).collect();
+    ends.into_iter().zip(following).map(move |(a, b)| border_point(0.5 * (a + b), radii))
+}
+
+/// Unit vectors at equal angles.
+fn directions(count: usize) -> impl Iterator<Item = DVec2> {
+    (0..count).map(move |n| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * n as f64 / count as f64);
+        DVec2::new(cos, sin)
+    })
+}
+
+/// The surface around a region's rim, in splat coordinates.
+struct Below {
+    triangles: Vec<[DVec3; 3]>,
+    /// Single points and how far each stands for the surface around it.
+    points: Vec<(DVec2, f64)>,
+}
+
+impl Below {
+    fn new(surface: &Surface, pose: &Pose, region: &Region) -> Self {
+        let local = |point: u32| pose.to_local(surface.point(point));
+        let mut pieces: Vec<u32> = region
+            .rim
+            .iter()
+            .flat_map(|&(_, outside)| surface.pieces_of.row(outside).iter().copied())
+            .collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        let corners = pieces.iter().map(|&piece| surface.pieces[piece as usize]);
+        let triangles = corners.filter(|[a, b, _]| a != b).map(|corners| corners.map(local)).collect();
+        let points =
+            region.members.iter().map(|member| member.point).chain(region.rim.iter().map(|rim| rim.1));
+        let single = points.map(|point| (point, f64::from(surface.margin[point as usize])));
+        let points =
+            single.filter(|&(_, margin)| margin > 0.0).map(|(p, m)| (local(p).truncate(), m)).collect();
+        Self { triangles, points }
+    }
+
+    /// Whether a triangle lies within `budget` of a height over a place.
+    fn near(&self, uv: DVec2, height: f64, budget: f64) -> bool {
+        self.triangles.iter().any(|triangle| {
+            height_over(triangle, uv).is_some_and(|surface| (surface - height).abs() <= budget)
+        })
+    }
+}
+
+impl Below {
+    /// Which of many places around the rim have a point of a cloud in reach.
+    ///
+    /// Places lie about a margin apart, so that nothing wider than the reach slips between.
+    fn near_rim(&self, outer: DVec2, pad: f64) -> Vec<bool> {
+        let finest = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+        let around = std::f64::consts::TAU * outer.max_element() / (finest + pad);
+        let count = around.clamp(PLACES.0, MOST_PLACES) as usize;
+        let rim: Vec<DVec2> = directions(count).map(|direction| direction * outer).collect();
+        let mut near = vec![false; count];
+        for &(point, margin) in &self.points {
+            let reach = CLOUD_REACH * margin + pad;
+            let flat = point / outer;
+            // No place of the rim is nearer to the point than this.
+            if (1.0 - flat.length()).abs() * outer.min_element() > reach {
+                continue;
+            }
+            let in_reach = |n: &usize| rim[*n].distance_squared(point) <= reach * reach;
+            for angle in beside(flat, outer.x >= outer.y) {
+                let turns = (angle / std::f64::consts::TAU).rem_euclid(1.0);
+                let at = (turns * count as f64).round() as usize % count;
+                (0..count).map(|n| (at + n) % count).take_while(in_reach).for_each(|n| near[n] = true);
+                (1..count)
+                    .map(|n| (at + count - n) % count)
+                    .take_while(in_reach)
+                    .for_each(|n| near[n] = true);
+            }
+        }
+        near
+    }
+}
+
+/// Where the rim passes nearest to a place, as angles of the unit circle that it is when
+/// divided by the radii: outward, and, for a place near the long axis of a needle, straight
+/// to both sides of it.
+fn beside(flat: DVec2, long_u: bool) -> [f64; 3] {
+    let outward = libm::atan2(flat.y, flat.x);
+    if long_u {
+        let side = libm::acos(flat.x.clamp(-1.0, 1.0));
+        [outward, side, -side]
+    } else {
+        let side = libm::asin(flat.y.clamp(-1.0, 1.0));
+        [outward, side, std::f64::consts::PI - side]
+    }
+}
+
+/// The height of a triangle over a place, if it lies over it.
+fn height_over(triangle: &[DVec3; 3], uv: DVec2) -> Option<f64> {
+    let [a, b, c] = triangle.map(|corner| corner.truncate());
+    let (wa, wb, wc) = (turn(uv, b, c), turn(a, uv, c), turn(a, b, uv));
+    let area = wa + wb + wc;
+    let inside = (wa >= 0.0 && wb >= 0.0 && wc >= 0.0) || (wa <= 0.0 && wb <= 0.0 && wc <= 0.0);
+    (inside && area != 0.0).then(|| (wa * triangle[0].z + wb * triangle[1].z + wc * triangle[2].z) / area)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_are_those_of_the_triangle() {
+        let triangle = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(2.0, 0.0, 3.0), DVec3::new(0.0, 2.0, 1.0)];
+        assert_eq!(height_over(&triangle, DVec2::new(0.5, 0.5)), Some(1.5));
+        assert_eq!(height_over(&triangle, DVec2::new(1.5, 1.5)), None);
+    }
+}

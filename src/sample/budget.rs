@@ -1,0 +1,70 @@
+//! The error budget in model units, shared out for sampling.
+
+use glam::DVec2;
+
+use crate::fit::clip::ClipTolerance;
+use crate::tolerance::{CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, FIT_SHARE, LINE_FIT_SHARE};
+
+/// Distances that growing a splat must keep, in model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Between a point and the quadric, along `k`.
+    pub fit: f64,
+    /// The same for a point on a feature line: two surfaces meet there, each cut somewhat
+    /// outside the line, and the nearer both pass the line the less remains of a slit.
+    pub line: f64,
+    /// Between the surface and the quadric where the domain's rim crosses it. What lies out
+    /// there is covered by another splat too, so twice the budget is allowed (and quantising
+    /// takes its share of that).
+    pub rim: f64,
+    /// How far a large domain goes on beyond what it is trusted to cover: see [`Self::padded`].
+    pub pad: f64,
+    /// For clip curves.
+    pub clip: ClipTolerance,
+}
+
+/// Share of the bound that domains are padded by.
+const PAD_SHARE: f64 = 0.5;
+
+/// No radius is padded by more than this share of itself.
+const PAD_RADIUS_SHARE: f64 = 0.25;
+
+impl Budget {
+    /// Shares out a bound in model units.
+    #[must_use]
+    pub fn new(max_error: f64) -> Self {
+        Self {
+            fit: FIT_SHARE * max_error,
+            line: LINE_FIT_SHARE * max_error,
+            rim: 2.0 * FIT_SHARE * max_error,
+            pad: PAD_SHARE * max_error,
+            clip: ClipTolerance { outset: CLIP_OUTSET_SHARE * max_error, miss: CLIP_MISS_SHARE * max_error },
+        }
+    }
+
+    /// The radii of a splat that is trusted to cover an ellipse. It goes on a little beyond,
+    /// so that neighbours overlap by more than the distance their surfaces may lie apart.
+    #[must_use]
+    pub fn padded(&self, trusted: DVec2) -> DVec2 {
+        trusted + (PAD_RADIUS_SHARE * trusted).min(DVec2::splat(self.pad))
+    }
+
+    /// The ellipse that a splat is trusted to cover: the inverse of [`Self::padded`].
+    #[must_use]
+    pub fn trusted(&self, radii: DVec2) -> DVec2 {
+        (radii - self.pad).max(radii / (1.0 + PAD_RADIUS_SHARE))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn padding_and_trust_are_inverse() {
+        let budget = Budget::new(0.01);
+        for trusted in [DVec2::new(1e-4, 0.5), DVec2::new(0.02, 0.019), DVec2::new(0.0201, 3.0)] {
+            assert!(budget.trusted(budget.padded(trusted)).distance(trusted) < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! A small set of candidates that covers every piece.
+//!
+//! Greedy by newly covered area a byte, with lazy updates (Wu and Kobbelt 2004, 4), then
+//! whatever is left is seeded on its own, then redundant splats go.
+
+use std::collections::BinaryHeap;
+
+use super::candidates::Regions;
+use super::grow::Grower;
+use super::polygon;
+use super::settle::Candidate;
+use crate::model::splat::{Kind, Splat};
+use rayon::prelude::*;
+
+/// About what a splat costs in the file, in bytes: enough to weigh kinds against each other.
+#[must_use]
+pub fn cost(splat: &Splat) -> f64 {
+    let base = match splat.kind() {
+        Kind::Flat => 9.0,
+        Kind::Quadric => 11.0,
+    };
+    base + splat.clips.iter().map(|clip| if clip.is_straight() { 3.0 } else { 7.0 }).sum::<f64>()
+}
+
+/// What the choice came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// Candidates grown.
+    pub candidates: usize,
+    /// Pieces that only a splat of their own could cover.
+    pub last_resorts: usize,
+    /// Pieces that not even that could cover, because it cannot be stored.
+    pub uncovered: usize,
+    /// Splats dropped because others cover all that they cover.
+    pub redundant: usize,
+    /// Splats whose points did not determine a whole quadric.
+    pub low_rank: usize,
+}
+
+/// A candidate's newly covered area a byte when it was last looked at.
+struct Gain {
+    gain: f64,
+    index: usize,
+}
+
+impl Ord for Gain {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        // Ties go to the lesser index, so that the choice is the same on every run.
+        self.gain.total_cmp(&other.gain).then(other.index.cmp(&self.index))
+    }
+}
+
+impl PartialOrd for Gain {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Gain {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Gain {}
+
+/// Chooses from the candidates, adding to them what no candidate covers.
+#[must_use]
+pub fn cover(grower: &Grower, regions: &Regions, mut candidates: Vec<Candidate>) -> (Vec<Splat>, Choice) {
+    let areas: Vec<f64> = (0..grower.surface.pieces.len() as u32).map(|p| grower.surface.area(p)).collect();
+    let mut choice = Choice::default();
+    let mut times = vec![0_u32; areas.len()];
+    let mut chosen = greedy(&candidates, &areas, &mut times);
+    cover_rest(grower, regions, &mut candidates, &mut chosen, &mut times, &mut choice);
+    choice.candidates = candidates.len();
+    choice.redundant = drop_redundant(&candidates, &areas, &mut chosen, &mut times);
+    choice.low_rank = chosen.iter().filter(|&&index| candidates[index].rank < 6).count();
+    (chosen.into_iter().map(|index| candidates[index].splat.clone()).collect(), choice)
+}
+
+fn greedy(candidates: &[Candidate], areas: &[f64], times: &mut [u32]) -> Vec<usize> {
+    let gain = |index: usize, times: &[u32]| {
+        let candidate = &candidates[index];
+        let new = candidate.pieces.iter().filter(|&&p| times[p as usize] == 0);
+        // A piece without area still has to be covered.
+        new.map(|&p| areas[p as usize].max(f64::MIN_POSITIVE)).sum::<f64>() / cost(&candidate.splat)
+    };
+    let mut heap: BinaryHeap<Gain> =
+        (0..candidates.len()).map(|index| Gain { gain: gain(index, times), index }).collect();
+    let mut chosen = Vec::new();
+    while let Some(top) = heap.pop() {
+        let now = Gain { gain: gain(top.index, times), index: top.index };
+        if now.gain <= 0.0 {
+            continue;
+        }
+        // Gains only fall, so one that still leads the others' old gains is the greatest.
+        if heap.peek().is_some_and(|next| *next > now) {
+            heap.push(now);
+            continue;
+        }
+        for &piece in &candidates[top.index].pieces {
+            times[piece as usize] += 1;
+        }
+        chosen.push(top.index);
+    }
+    chosen
+}
+
+/// Seeds left to grow before the pieces they cover are marked.
+const BATCH: usize = 64;
+
+/// Covers what no candidate does.
+fn cover_rest(
+    grower: &Grower,
+    regions: &Regions,
+    candidates: &mut Vec<Candidate>,
+    chosen: &mut Vec<usize>,
+    times: &mut [u32],
+    choice: &mut Choice,
+) {
+    let mut at = 0;
+    while at < times.len() {
+        let mut batch = Vec::with_capacity(BATCH);
+        while at < times.len() && batch.len() < BATCH {
+            if times[at] == 0 {
+                batch.push(at as u32);
+            }
+            at += 1;
+        }
+        let grown: Vec<Option<Candidate>> =
+            batch.par_iter().map(|&piece| regions.with(|region| grower.grow(piece, region))).collect();
+        for (&piece, grown) in batch.iter().zip(grown) {
+            if times[piece as usize] > 0 {
+                continue;
+            }
+            let candidate = match grown {
+                Some(candidate) => candidate,
+                None => match polygon::over(grower, piece) {
+                    Some(candidate) => {
+                        choice.last_resorts += 1;
+                        candidate
+                    }
+                    None => {
+                        choice.uncovered += 1;
+                        continue;
+                    }
+                },
+            };
+            for &covered in &candidate.pieces {
+                times[covered as usize] += 1;
+            }
+            chosen.push(candidates.len());
+            candidates.push(candidate);
+        }
+    }
+}
+
+/// Drops splats all of whose pieces others cover, those with the least area first.
+fn drop_redundant(
+    candidates: &[Candidate],
+    areas: &[f64],
+    chosen: &mut Vec<usize>,
+    times: &mut [u32],
+) -> usize {
+    let area = |index: usize| candidates[index].pieces.iter().map(|&p| areas[p as usize]).sum::<f64>();
+    let mut order: Vec<(f64, usize)> = chosen.iter().map(|&index| (area(index), index)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut dropped = Vec::new();
+    for (_, index) in order {
+        let pieces = &candidates[index].pieces;
+        if pieces.iter().all(|&piece| times[piece as usize] > 1) {
+            for &piece in pieces {
+                times[piece as usize] -= 1;
+            }
+            dropped.push(index);
+        }
+    }
+    dropped.sort_unstable();
+    chosen.retain(|index| dropped.binary_search(index).is_err());
+    dropped.len()
+}

@@ -1,0 +1,259 @@
+//! Grows the largest splat around a seed that stays within the budget.
+//!
+//! After Wu and Kobbelt 2004: the domain grows until the fit's largest error passes the
+//! bound. Here it is an ellipse in the principal frame, first round, then longer along each
+//! axis while that holds, and it is cut where the walk over the surface meets a border.
+
+use glam::{DVec2, DVec3};
+
+use super::backing::backed;
+use super::budget::Budget;
+use super::outline::{Outline, outlines};
+use super::region::Region;
+use super::settle::{Candidate, settle};
+use crate::analyse::surface::Surface;
+use crate::fit::clip::{self, Care};
+use crate::fit::ellipse::crossings;
+use crate::fit::pose::{Pose, principal};
+use crate::model::clip_curve::{ClipCurve, Conic};
+use crate::model::splat::Splat;
+
+/// Factors by which a round domain grows, each while it succeeds.
+const ROUND_STEPS: [f64; 3] = [1.5, 1.2, 1.07];
+
+/// Factors by which one radius grows, each while it succeeds.
+const STRETCH_STEPS: [f64; 3] = [1.6, 1.25, 1.08];
+
+/// Steps of growth that may pass before a new point of the surface is reached.
+const PATIENCE: usize = 4;
+
+/// The least domain around a point of a cloud, in the point's margins: it must reach beyond
+/// one to cover the point.
+const LEAST_MARGINS: f64 = 1.2;
+
+/// More clip curves than this on one splat cost more than a second splat would.
+const MOST_CLIPS: usize = 8;
+
+/// No radius grows beyond this, in model units: the model lies within `[-1, 1]³`.
+const LONGEST_RADIUS: f64 = 4.0;
+
+/// The least radius worth trying, as a share of the budget, however small the piece.
+const LEAST_SHARE: f64 = 0.02;
+
+/// A fit that turns the normal by more than this (cosine of 3°) is judged on what its own
+/// ellipse reaches.
+const TURNED: f64 = 0.9986;
+
+/// No quadric may slope more than this at the rim (about 76°): beyond, a height over the
+/// tangent plane says little of the distance between surfaces.
+const STEEPEST: f64 = 4.0;
+
+/// Points on lines count this many times in the fit, since they must lie nearer.
+const LINE_WEIGHT: f64 = 4.0;
+
+/// Principal directions matter where the two sagittas differ by this share of the budget.
+const ROUND_SHARE: f64 = 0.1;
+
+/// Why a domain does not keep the budget.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// A seed lies outside the ellipse.
+    Seed,
+    /// The surface strays from every quadric.
+    Fit,
+    /// No clip curves could be fitted to an outline.
+    Clip,
+    /// The clip curves fitted stray from the outline, or cut the surface.
+    Stray,
+    /// Below a part of the rim that is not cut away there is no surface.
+    Bare,
+}
+
+/// What a splat without clip curves comes back as from whatever will store it; `None` if it
+/// cannot be stored.
+pub type Round<'a> = dyn Fn(&Splat) -> Option<Splat> + Sync + 'a;
+
+/// Everything growing needs that stays the same from seed to seed.
+pub struct Grower<'a> {
+    /// The surface.
+    pub surface: &'a Surface,
+    /// The distances to keep.
+    pub budget: Budget,
+    /// Splats are rounded before they are judged and cut, so that storing them changes
+    /// nothing that was judged.
+    pub round: &'a Round<'a>,
+}
+
+/// A pose and radii with the quadric found for them.
+#[derive(Clone, Debug)]
+pub(super) struct Domain {
+    pub(super) pose: Pose,
+    /// Of the ellipse that is trusted to cover; the splat's own goes on by the pad.
+    pub(super) radii: DVec2,
+    pub(super) curvature: DVec2,
+    pub(super) rank: u8,
+    /// How many points the ellipse reaches.
+    members: usize,
+}
+
+impl Grower<'_> {
+    /// The largest splat found around a piece that covers it; `None` if even the least does
+    /// not keep the budget.
+    pub fn grow(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
+        let seeds = self.surface.pieces[piece as usize];
+        let (pose, least) = self.start(piece);
+        let mut best = self.attempt(&pose, DVec2::splat(least), &seeds, region).ok()?;
+        let mut grow = |best: &mut Domain, factor: DVec2| {
+            let reached = best.members;
+            let mut grown = best.clone();
+            // A domain that grows over nothing but what is cut away gains nothing, but the
+            // next point of the surface may lie a few steps off.
+            for _ in 0..PATIENCE {
+                let radii = grown.radii * factor;
+                if radii.max_element() > LONGEST_RADIUS {
+                    return false;
+                }
+                match self.attempt(&grown.pose, radii, &seeds, region) {
+                    Ok(domain) => grown = domain,
+                    Err(_) => return false,
+                }
+                if grown.members > reached {
+                    *best = grown;
+                    return true;
+                }
+            }
+            false
+        };
+        for step in ROUND_STEPS {
+            while grow(&mut best, DVec2::splat(step)) {}
+        }
+        for step in STRETCH_STEPS {
+            while grow(&mut best, DVec2::new(step, 1.0)) || grow(&mut best, DVec2::new(1.0, step)) {}
+        }
+        settle(self, best, &seeds, piece, region)
+    }
+
+    /// A pose at the middle of a piece and the least radius worth trying.
+    fn start(&self, piece: u32) -> (Pose, f64) {
+        let corners = self.surface.pieces[piece as usize];
+        let middle = self.surface.middle(piece);
+        let normal: DVec3 = corners.iter().map(|&corner| self.surface.normal(corner)).sum();
+        let reach = corners.iter().map(|&c| self.surface.point(c).distance(middle)).fold(0.0, f64::max);
+        let margin = f64::from(self.surface.margin[corners[0] as usize]);
+        // A little more than the piece, which must lie inside whatever is rounded.
+        let least = (reach * 1.01).max(LEAST_MARGINS * margin).max(LEAST_SHARE * self.budget.fit);
+        (Pose::at(middle, normal), least)
+    }
+
+    /// Fits a splat to what an ellipse reaches; why not, if it does not keep the budget.
+    pub(super) fn attempt(
+        &self,
+        pose: &Pose,
+        radii: DVec2,
+        seeds: &[u32],
+        region: &mut Region,
+    ) -> Result<Domain, Stop> {
+        let outer = self.budget.padded(radii);
+        if !region.gather(self.surface, pose, outer, seeds) {
+            return Err(Stop::Seed);
+        }
+        let largest = outer.max_element();
+        let least = ROUND_SHARE * self.budget.fit / (largest * largest);
+        let rim = self.rim(pose, outer, region).map(|point| (point, 1.0));
+        let members = region.members.iter().map(|member| {
+            let weight = if self.surface.on_border(member.point) { LINE_WEIGHT } else { 1.0 };
+            (self.surface.point(member.point), weight)
+        });
+        let points = members.chain(rim);
+        let fitted = principal(pose, largest, least, points);
+        if fitted.pose.axes.z_axis.dot(pose.axes.z_axis) < TURNED {
+            // The ellipse has turned so far that it reaches other points.
+            if !region.gather(self.surface, &fitted.pose, outer, seeds) {
+                return Err(Stop::Seed);
+            }
+        } else {
+            for member in &mut region.members {
+                member.local = fitted.pose.to_local(self.surface.point(member.point));
+            }
+        }
+        let steepest = (2.0 * fitted.curvature * outer).abs().max_element();
+        if !(steepest <= STEEPEST && self.keeps(&fitted.pose, outer, fitted.curvature, 1.0, region)) {
+            return Err(Stop::Fit);
+        }
+        let clips = self.clips(&fitted.pose, outer, Care::Feasible, region)?;
+        if !backed(self, &fitted.pose, outer, fitted.curvature, &clips, region) {
+            return Err(Stop::Bare);
+        }
+        let members = region.members.len();
+        Ok(Domain { pose: fitted.pose, radii, curvature: fitted.curvature, rank: fitted.rank, members })
+    }
+
+    /// Whether members and rim lie near enough to a quadric.
+    ///
+    /// `slack` multiplies the distances allowed.
+    pub(super) fn keeps(
+        &self,
+        pose: &Pose,
+        outer: DVec2,
+        curvature: DVec2,
+        slack: f64,
+        region: &Region,
+    ) -> bool {
+        let miss = |local: DVec3| {
+            let uv = local.truncate();
+            (local.z - (curvature * uv * uv).element_sum()).abs()
+        };
+        let limit =
+            |point: u32| if self.surface.on_border(point) { self.budget.line } else { self.budget.fit };
+        region.members.iter().all(|member| miss(member.local) <= slack * limit(member.point))
+            && self
+                .rim(pose, outer, region)
+                .all(|point| miss(pose.to_local(point)) <= slack * self.budget.rim)
+    }
+
+    /// Where the surface leaves the ellipse, as far as neighbours' joining lines tell.
+    ///
+    /// Between the members the surface of a mesh is flat, and a quadric through few members
+    /// alone could stray from it anywhere; these places hold it.
+    fn rim<'r>(
+        &'r self,
+        pose: &'r Pose,
+        outer: DVec2,
+        region: &'r Region,
+    ) -> impl Iterator<Item = DVec3> + Clone + 'r {
+        region.rim.iter().filter_map(move |&(inside, outside)| {
+            let ends = [inside, outside].map(|point| self.surface.point(point));
+            let [a, b] = ends.map(|point| pose.to_local(point).truncate());
+            let (_, leave) = crossings(a, b, outer)?;
+            (0.0..=1.0).contains(&leave).then(|| ends[0].lerp(ends[1], leave))
+        })
+    }
+
+    /// Clip curves for every border the region meets; why not, if they cannot follow it.
+    pub(super) fn clips(
+        &self,
+        pose: &Pose,
+        outer: DVec2,
+        care: Care,
+        region: &Region,
+    ) -> Result<Vec<ClipCurve>, Stop> {
+        let outlines = outlines(self.surface, region, pose);
+        let mut clips = Vec::new();
+        for Outline { points, closed } in &outlines {
+            clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, care).ok_or(Stop::Clip)?);
+            if clips.len() > MOST_CLIPS {
+                return Err(Stop::Clip);
+            }
+        }
+        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(outer)).collect();
+        let cuts = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
+        let followed =
+            |line: &Outline| clip::follows(&line.points, line.closed, outer, cuts, &self.budget.clip);
+        let lines = outlines.iter().map(|line| (line.points.as_slice(), line.closed));
+        if outlines.iter().all(followed) && clip::bounds_only(lines, &conics, outer, &self.budget.clip) {
+            Ok(clips)
+        } else {
+            Err(Stop::Stray)
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
+//! became redundant.
+
+pub mod backing;
+pub mod budget;
+pub mod candidates;
+pub mod cover;
+pub mod grow;
+pub mod margin;
+pub mod outline;
+pub mod polygon;
+pub mod region;
+pub mod settle;

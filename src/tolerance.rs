@@ -1,0 +1,39 @@
+//! The error budget, how it is shared out, and every number that decides a case.
+//!
+//! The user gives one number, `--max-error`: the largest distance, along the splat's normal,
+//! between an input point and a splat that covers it, measured on the file as decoded. Each
+//! stage gets a share, and the shares of one distance add up to no more than 1.
+
+/// Share of the budget that the fit may use while a splat grows. What is left takes the
+/// rounding to the file's grids, after which the splat is judged against the whole.
+pub const FIT_SHARE: f64 = 0.92;
+
+/// Share of the budget that rounding to the file's grids may use, anywhere on a splat.
+///
+/// Proved per field in `format::quantize`.
+pub const QUANTIZE_SHARE: f64 = 0.15;
+
+/// Share of the budget that the fit may use at points on feature lines.
+pub const LINE_FIT_SHARE: f64 = 0.3;
+
+/// Clip curves follow their feature line this share of the budget outside it, so that no
+/// slit opens between the two surfaces that meet there, each of which may pass the line at a
+/// distance.
+pub const CLIP_OUTSET_SHARE: f64 = 0.5;
+
+/// Share of the budget by which a fitted clip curve may miss the line so moved.
+///
+/// With the rounding below, a curve lies between 0.1 and 0.9 budgets outside its line.
+pub const CLIP_MISS_SHARE: f64 = 0.3;
+
+/// Share of the budget by which rounding may move a clip curve.
+pub const CLIP_QUANTIZE_SHARE: f64 = 0.1;
+
+/// Tessellations stay within this share of the budget of the surface they stand for.
+pub const EXPORT_SHARE: f64 = 0.1;
+
+/// Default dihedral angle, degrees, from which a mesh edge is a feature edge.
+pub const DEFAULT_EDGE_ANGLE: f64 = 40.0;
+
+/// Default error budget, a fraction of the bounding box's diagonal.
+pub const DEFAULT_MAX_ERROR: f64 = 1e-3;

@@ -1,0 +1,333 @@
+//! The built binary, end to end: results, exit codes, and what goes to which stream.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+use qsplat::format::{self, Limits};
+use qsplat::report::Report;
+use tempfile::TempDir;
+
+fn fixture(name: &str) -> String {
+    format!("{}/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn qsplat(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_qsplat")).args(arguments).output().unwrap()
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap_or_else(|| panic!("killed: {output:?}"))
+}
+
+/// Runs, expects exit code 0, and returns standard output.
+fn ok(arguments: &[&str]) -> String {
+    let output = qsplat(arguments);
+    assert_eq!(code(&output), 0, "{arguments:?}\n{}", err(&output));
+    out(&output)
+}
+
+/// Runs, expects exit code 2 and nothing on standard output, and returns standard error.
+fn refused(arguments: &[&str]) -> String {
+    let output = qsplat(arguments);
+    assert_eq!((code(&output), out(&output).as_str()), (2, ""), "{arguments:?}\n{}", err(&output));
+    let message = err(&output);
+    assert!(!message.contains("internal error"), "{arguments:?}: {message}");
+    message
+}
+
+/// A capped cylinder with its feature lines, baked once for all tests.
+fn baked() -> &'static (TempDir, String) {
+    static BAKED: OnceLock<(TempDir, String)> = OnceLock::new();
+    BAKED.get_or_init(|| {
+        let directory = tempfile::tempdir().unwrap();
+        let file = text(&directory.path().join("cylinder.qsplat"));
+        let (input, edges) = (fixture("capped-cylinder.ply"), fixture("capped-cylinder.edges.obj"));
+        let report = text(&directory.path().join("report.json"));
+        ok(&["bake", &input, "--edges", &edges, "-o", &file, "--report", &report]);
+        (directory, file)
+    })
+}
+
+fn text(path: &Path) -> String {
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn bake_and_info_say_the_same_of_a_file() {
+    let (directory, file) = baked();
+    let json = fs::read_to_string(directory.path().join("report.json")).unwrap();
+    let bake: Report = serde_json::from_str(&json).unwrap();
+    let info: Report = serde_json::from_str(&ok(&["info", file, "--json"])).unwrap();
+    assert_eq!((&info.schema, &info.counts, &info.error), (&bake.schema, &bake.counts, &bake.error));
+    assert_eq!((&info.file, &info.model), (&bake.file, &bake.model));
+    assert!(info.input.is_none() && info.options.is_none() && info.run.is_none());
+    assert_eq!(bake.file.bytes, fs::metadata(file).unwrap().len());
+    let of_chunks: u64 = bake.file.chunks.iter().map(|chunk| chunk.coded_bytes).sum();
+    assert_eq!(bake.file.head_bytes + of_chunks, bake.file.bytes, "every byte is accounted for");
+    assert!(bake.error.within_budget && bake.error.fit.max > 0.0 && bake.error.fit.rms <= bake.error.fit.max);
+    assert!((bake.error.budget - 1e-3).abs() < 1e-9, "the default is 0.1 % of the diagonal");
+    assert!(bake.counts.clipped > 0 && bake.counts.curved_clips > 0, "{:?}", bake.counts);
+    let input = bake.input.unwrap();
+    assert_eq!((input.points, input.triangles, input.line_segments), (3462, 6920, Some(194)));
+    let names: Vec<String> = bake.run.unwrap().stages.into_iter().map(|stage| stage.name).collect();
+    for stage in ["read", "analyse", "sample", "encode", "write"] {
+        assert!(names.iter().any(|name| name == stage), "{stage} is not among {names:?}");
+    }
+    assert!(ok(&["info", file]).contains("within") || ok(&["info", file]).contains("kept"));
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let (directory, file) = baked();
+    let (input, edges) = (fixture("capped-cylinder.ply"), fixture("capped-cylinder.edges.obj"));
+    for threads in ["1", "2", "3"] {
+        let other = text(&directory.path().join(format!("threads-{threads}.qsplat")));
+        ok(&["bake", &input, "--edges", &edges, "-o", &other, "--threads", threads]);
+        assert!(fs::read(&other).unwrap() == fs::read(file).unwrap(), "{threads} threads change the file");
+    }
+}
+
+#[test]
+fn an_absolute_bound_is_in_input_units() {
+    let directory = tempfile::tempdir().unwrap();
+    let (file, report) = (text(&directory.path().join("a.qsplat")), text(&directory.path().join("a.json")));
+    ok(&[
+        "bake",
+        &fixture("sphere.ply"),
+        "-o",
+        &file,
+        "--max-error",
+        "0.004",
+        "--report",
+        &report,
+        "--quiet",
+    ]);
+    let report: Report = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
+    let bound = report.error.budget * report.model.diagonal;
+    assert!((bound - 0.004).abs() < 1e-7, "{bound}");
+    assert_eq!(report.options.unwrap().max_error_unit, "input");
+}
+
+#[test]
+fn streams_are_kept_apart() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = text(&directory.path().join("a.qsplat"));
+    let bake = |more: &[&str]| {
+        let input = fixture("monkey-saddle.ply");
+        let output = qsplat(&[&["bake", &input, "-o", &file], more].concat());
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        (out(&output), err(&output))
+    };
+    let (result, notes) = bake(&[]);
+    assert!(result.contains("splats") && notes.is_empty(), "nothing but the result when piped: {notes}");
+    assert_eq!(bake(&["--quiet", "--progress", "json"]), (String::new(), String::new()));
+    let (_, lines) = bake(&["--progress", "json"]);
+    let stages = lines.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    assert!(stages.filter(|line| line["event"] == "stage").count() >= 5, "{lines}");
+    let (result, lines) = bake(&["--progress", "plain"]);
+    assert!(lines.lines().any(|line| line.ends_with("sample")) && result.contains("splats"), "{lines}");
+}
+
+#[test]
+fn wrong_usage_ends_in_2_with_a_reason() {
+    let sphere = fixture("sphere.ply");
+    let bake = |more: &[&str]| refused(&[&["bake", &sphere, "-o", "never.qsplat"], more].concat());
+    for (more, word) in [
+        (["--max-error", "0"], "positive"),
+        (["--max-error", "-3%"], "positive"),
+        (["--max-error", "thin"], "0.1%"),
+        (["--max-error", "nan"], "positive"),
+        (["--max-error", "200%"], "100%"),
+        (["--effort", "10"], "1..=9"),
+        (["--normals", "maybe"], "estimate"),
+        (["--color", "keep"], "colour"),
+        (["--edges", "no-such-file.obj"], "no-such-file.obj"),
+        (["--edge-angle", "400"], "180"),
+        (["--threads", "0"], "threads"),
+        (["--progress", "loud"], "plain"),
+    ] {
+        let message = bake(&more);
+        assert!(message.contains(word), "{more:?}: {message}");
+    }
+    assert!(!Path::new("never.qsplat").exists());
+    let render = |more: &[&str]| refused(&[&["render", &sphere, "-o", "never.png"], more].concat());
+    for (more, word) in [
+        (vec!["--size", "0x10"], "16384"),
+        (vec!["--size", "99999x99999"], "16384"),
+        (vec!["--size", "big"], "1024x768"),
+        (vec!["--fov", "180"], "180"),
+        (vec!["--ortho", "--fov", "30"], "--fov"),
+        (vec!["--view", "above"], "iso"),
+        (vec!["--view", "10,95"], "elevation"),
+        (vec!["--camera", "none.json"], "none.json"),
+        (vec!["--camera", &sphere], "sphere.ply"),
+        (vec!["--show", "bones"], "shaded"),
+        (vec!["--device", "tpu"], "gpu"),
+    ] {
+        let message = render(&more);
+        assert!(message.contains(word), "{more:?}: {message}");
+    }
+    refused(&[]);
+    refused(&["paint"]);
+    refused(&["render", &sphere]);
+    assert!(refused(&["info", "no-such.qsplat"]).contains("no-such.qsplat"));
+    assert!(refused(&["verify", &sphere, "--golden", "x", "--max-flip", "2"]).contains("between 0 and 1"));
+    for help in [vec!["--help"], vec!["bake", "--help"], vec!["--version"]] {
+        assert!(ok(&help).contains("qsplat"), "{help:?}");
+    }
+}
+
+#[test]
+fn pictures_of_file_and_input_agree() {
+    let (directory, file) = baked();
+    let picture = |name: &str, more: &[&str]| {
+        let path = directory.path().join(format!("{name}.png"));
+        ok(&[&["render", "-o", &text(&path), "--size", "160x120", "--device", "cpu"], more].concat());
+        image::open(&path).unwrap().to_rgb8()
+    };
+    let input = fixture("capped-cylinder.ply");
+    let splats = picture("whole", &[file, "--view", "iso"]);
+    let mesh = picture("mesh", &[&input, "--view", "iso"]);
+    assert_eq!(splats.dimensions(), (160, 120));
+    let flip = qsplat::measure::image::flip(&mesh, &splats).unwrap().mean();
+    assert!(flip < 0.02, "FLIP {flip} between input and bake");
+    let aside = picture("aside", &[file, "--view", "-30,-20", "--ortho"]);
+    assert!(aside != splats);
+    for show in ["normals", "depth", "splats", "kinds"] {
+        assert!(picture(show, &[file, "--view", "iso", "--show", show]) != splats, "{show} shows the same");
+    }
+    let camera = text(&directory.path().join("camera.json"));
+    let json = r#"{"eye":[0,-4,0.5],"target":[0,0,0.5],"up":[0,0,1],"projection":{"perspective":{"fov_degrees":25}}}"#;
+    fs::write(&camera, json).unwrap();
+    let stored = picture("stored", &[file, "--camera", &camera]);
+    assert!(stored.pixels().any(|pixel| pixel.0 != [255; 3]), "the camera sees the model");
+    assert!(ok(&["render", "--list-devices"]).contains("CPU reference"));
+}
+
+#[test]
+fn export_gives_faces_that_name_their_splat() {
+    let (directory, file) = baked();
+    let path = directory.path().join("out.ply");
+    assert_eq!(ok(&["export", file, "-o", &text(&path)]), "");
+    let bytes = fs::read(&path).unwrap();
+    let header = String::from_utf8_lossy(&bytes[..400]).into_owned();
+    assert!(header.contains("property double x") && header.contains("property int splat"), "{header}");
+    let limits = qsplat::ingest::Limits::default();
+    let qsplat::ingest::Input::Mesh(mesh) = qsplat::ingest::read(&path, &limits).unwrap() else {
+        panic!("not a mesh");
+    };
+    // The area of the cylinder (radius 0.3, height 1, two caps), splats overlapping.
+    let scale = mesh.vertices.frame.scale();
+    let area: f64 = (0..mesh.triangles.len())
+        .map(|t| mesh.corners(t).map(|p| p.as_dvec3() * scale))
+        .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length())
+        .sum();
+    let true_area = 2.0 * std::f64::consts::PI * 0.3 * (1.0 + 0.3);
+    assert!(area > 0.99 * true_area && area < 4.0 * true_area, "{area} for {true_area}");
+}
+
+#[test]
+fn verify_passes_and_finds_one_changed_coefficient() {
+    let (directory, file) = baked();
+    let golden = text(&directory.path().join("golden"));
+    let verify = |file: &str, more: &[&str]| {
+        qsplat(&[&["verify", file, "--golden", &golden, "--device", "cpu"], more].concat())
+    };
+    assert!(err(&verify(file, &[])).contains("--bless"), "nothing to compare with yet");
+    ok(&["verify", file, "--golden", &golden, "--bless"]);
+    let sound = verify(file, &["--max-flip", "0"]);
+    assert_eq!(code(&sound), 0, "{}", out(&sound));
+    let mut asset = format::read_file(file.as_ref(), &Limits::default()).unwrap();
+    let splat = asset.splats.iter_mut().find(|splat| splat.curvature.length() > 0.0).unwrap();
+    splat.curvature *= 1.5;
+    let changed = text(&directory.path().join("changed.qsplat"));
+    format::write_file(changed.as_ref(), &format::encode(&asset).unwrap()).unwrap();
+    let failed = verify(&changed, &[]);
+    assert_eq!(code(&failed), 1, "{}", out(&failed));
+    assert!(out(&failed).contains("FAILED") && err(&failed).contains("--report"), "{}", err(&failed));
+    let page = directory.path().join("page");
+    assert_eq!(code(&verify(&changed, &["--report", &text(&page)])), 1);
+    let html = fs::read_to_string(page.join("index.html")).unwrap();
+    assert!(html.contains("FAILED") && html.contains("iso-heat.png") && page.join("iso-heat.png").exists());
+}
+
+#[test]
+fn the_gpu_passes_the_goldens_of_the_reference() {
+    let required = std::env::var_os("QSPLAT_REQUIRE_GPU").is_some();
+    let devices = ok(&["render", "--list-devices"]);
+    if devices.lines().count() < 2 {
+        assert!(!required, "QSPLAT_REQUIRE_GPU is set, and there is no graphics adapter");
+        eprintln!("LEFT OUT: no graphics adapter here, so CPU and GPU were not compared");
+        return;
+    }
+    let (directory, file) = baked();
+    let golden = text(&directory.path().join("golden-gpu"));
+    ok(&["verify", file, "--golden", &golden, "--bless"]);
+    let verdict = qsplat(&["verify", file, "--golden", &golden, "--device", "gpu"]);
+    assert_eq!(code(&verdict), 0, "{}{}", out(&verdict), err(&verdict));
+}
+
+#[test]
+fn broken_files_end_in_2_and_name_the_fault() {
+    let (directory, file) = baked();
+    let whole = fs::read(file).unwrap();
+    let broken = directory.path().join("broken.qsplat");
+    for cut in [0, 1, 7, 8, 60, whole.len() / 2, whole.len() - 1] {
+        fs::write(&broken, &whole[..cut]).unwrap();
+        assert!(refused(&["info", &text(&broken)]).contains("broken.qsplat"), "cut at {cut}");
+    }
+    let target = directory.path().join("kept.qsplat");
+    fs::write(&target, b"as it was").unwrap();
+    let nonsense = directory.path().join("nonsense.ply");
+    fs::write(&nonsense, b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n").unwrap();
+    assert!(refused(&["bake", &text(&nonsense), "-o", &text(&target)]).contains("nonsense.ply"));
+    assert_eq!(fs::read(&target).unwrap(), b"as it was", "a failed bake leaves its target alone");
+    refused(&["bake", &fixture("sphere.ply"), "-o", "/no/such/directory/a.qsplat"]);
+}
+
+#[test]
+fn malformed_models_are_refused_or_harmless() {
+    let models = std::env::var_os("QSPLAT_MODELS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/models"), PathBuf::from);
+    let Ok(entries) = fs::read_dir(models.join("malformed")) else {
+        eprintln!("LEFT OUT: no malformed models at {}; set QSPLAT_MODELS", models.display());
+        return;
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let target = text(&directory.path().join("a.qsplat"));
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    for path in paths {
+        let output = qsplat(&["bake", &text(&path), "-o", &target, "--quiet"]);
+        let message = err(&output);
+        assert!([0, 2].contains(&code(&output)), "{}: {message}", path.display());
+        assert!(!message.contains("internal error"), "{}: {message}", path.display());
+        assert_eq!(code(&output) == 2, !message.is_empty(), "{}: {message}", path.display());
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    let (_, file) = baked();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_qsplat"))
+        .args(["info", file, "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((code(&output), err(&output).as_str()), (0, ""));
+}

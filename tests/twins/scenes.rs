@@ -1,0 +1,124 @@
+//! Small assets whose look is known: what the twins are compared on.
+
+use glam::{DMat3, DVec2, DVec3};
+use qsplat::model::asset::{Accuracy, Asset};
+use qsplat::model::clip_curve::ClipCurve;
+use qsplat::model::frame::Frame;
+use qsplat::model::splat::Splat;
+
+/// An asset of these splats over the cube from -1 to 1.
+pub fn asset(splats: Vec<Splat>, max_error: f64) -> Asset {
+    Asset {
+        frame: Frame::default(),
+        diagonal: 2.0 * 3.0_f64.sqrt(),
+        max_error,
+        fit: Accuracy::default(),
+        has_colors: false,
+        splats,
+    }
+}
+
+/// A frame with this normal.
+pub fn axes(normal: DVec3) -> DMat3 {
+    let k = normal.normalize();
+    let (i, j) = k.any_orthonormal_pair();
+    DMat3::from_cols(i, j, k)
+}
+
+/// A splat without clips.
+pub fn splat(center: DVec3, axes: DMat3, radii: DVec2, curvature: DVec2) -> Splat {
+    Splat { center, axes, radii, curvature, clips: Vec::new(), color: [255; 3] }
+}
+
+/// `count` even directions (a Fibonacci spiral).
+pub fn directions(count: usize) -> impl Iterator<Item = DVec3> {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    (0..count).map(move |n| {
+        let y = 1.0 - 2.0 * (n as f64 + 0.5) / count as f64;
+        let (sin, cos) = libm::sincos(golden * n as f64);
+        let r = (1.0 - y * y).sqrt();
+        DVec3::new(r * cos, y, r * sin)
+    })
+}
+
+/// A sphere of curved, coloured splats that overlap.
+pub fn sphere(count: usize, radius: f64, curved: bool) -> Asset {
+    let r = 2.0 * radius * (2.0 / count as f64).sqrt();
+    let curvature = if curved { DVec2::splat(-0.5 / radius) } else { DVec2::ZERO };
+    let splats = directions(count)
+        .map(|d| Splat {
+            color: d.to_array().map(|x| (127.5 + 127.5 * x) as u8),
+            ..splat(radius * d, axes(d), DVec2::splat(r), curvature)
+        })
+        .collect();
+    // A sagitta of the fourth order is what the osculating paraboloid misses.
+    let error = if curved { r.powi(4) / (8.0 * radius.powi(3)) } else { r * r / (2.0 * radius) };
+    Asset { has_colors: true, ..asset(splats, error) }
+}
+
+/// An open cylinder about `Y`: splats curved one way, three times as tall as wide.
+pub fn cylinder(around: usize, radius: f64, height: f64) -> Asset {
+    let step = std::f64::consts::TAU / around as f64;
+    let splats = (0..around).flat_map(|n| (-1..=1).map(move |level| (n, level))).map(|(n, level)| {
+        let (sin, cos) = libm::sincos(step * n as f64);
+        let k = DVec3::new(sin, 0.0, cos);
+        let axes = DMat3::from_cols(DVec3::Y.cross(k), DVec3::Y, k);
+        let center = radius * k + DVec3::Y * (height / 3.0 * f64::from(level));
+        let radii = DVec2::new(1.6 * radius * step, 0.35 * height);
+        splat(center, axes, radii, DVec2::new(-0.5 / radius, 0.0))
+    });
+    asset(splats.collect(), 0.003)
+}
+
+/// Three faces of a cube around the corner `(1, 1, 1) * 0.6`, each one large splat cut by a
+/// corner (`rho = 1`) so that the edges are sharp.
+pub fn corner() -> Asset {
+    let faces =
+        [(DVec3::X, DVec3::Y, DVec3::Z), (DVec3::Y, DVec3::Z, DVec3::X), (DVec3::Z, DVec3::X, DVec3::Y)];
+    let error = 0.002;
+    let splats = faces.map(|(i, j, k)| {
+        let radii = DVec2::new(1.1, 0.9);
+        let center = 0.6 * k;
+        // As a bake does: a little beyond the edge, so that no ray slips between two faces.
+        let p2 = DVec2::splat(0.6 + 0.25 * error);
+        // The legs run from the corner along -v and along -u to the ellipse's border.
+        let down = DVec2::new(p2.x, -radii.y * (1.0 - (p2.x / radii.x).powi(2)).sqrt());
+        let left = DVec2::new(-radii.x * (1.0 - (p2.y / radii.y).powi(2)).sqrt(), p2.y);
+        let clip = ClipCurve { alpha1: angle(down), alpha3: angle(left), p2, rho: 1.0 };
+        Splat { clips: vec![clip], ..splat(center, DMat3::from_cols(i, j, k), radii, DVec2::ZERO) }
+    });
+    asset(splats.to_vec(), error)
+}
+
+/// One bowl with these shapes of clip: chord, parabola, corner, and all at once.
+pub fn clipped(rho: f64, several: bool) -> Asset {
+    let mut clips = vec![ClipCurve { alpha1: 5.6, alpha3: 0.9, p2: DVec2::new(0.1, 0.05), rho }];
+    if several {
+        clips.push(ClipCurve { alpha1: 1.8, alpha3: 3.6, p2: DVec2::new(-0.2, 0.3), rho: 0.5 });
+        clips.push(ClipCurve::chord(4.2, 4.9));
+    }
+    let bowl =
+        splat(DVec3::ZERO, axes(DVec3::new(0.2, 0.3, 1.0)), DVec2::new(0.9, 0.7), DVec2::new(0.5, -0.4));
+    asset(vec![Splat { clips, ..bowl }], 0.002)
+}
+
+/// Needles, a thousand times as long as wide, flat and curved, every way.
+pub fn needles() -> Asset {
+    let splats = directions(500).enumerate().map(|(n, d)| {
+        let curvature = if n % 2 == 0 { DVec2::ZERO } else { DVec2::new(0.3, 0.0) };
+        splat(0.5 * d, axes(d), DVec2::new(0.5, 0.0005), curvature)
+    });
+    asset(splats.collect(), 0.0005)
+}
+
+/// Central angle in `[0, 2π)`.
+fn angle(p: DVec2) -> f64 {
+    libm::atan2(p.y, p.x).rem_euclid(std::f64::consts::TAU)
+}
+
+/// Everything at once: all four classes, in colour.
+pub fn all_kinds() -> Asset {
+    let parts = [sphere(120, 0.5, true), corner(), clipped(0.6, true), needles(), cylinder(12, 0.9, 0.4)];
+    let splats: Vec<Splat> = parts.into_iter().flat_map(|part| part.splats).collect();
+    Asset { has_colors: true, ..asset(splats, 0.002) }
+}
