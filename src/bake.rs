@@ -275,7 +275,7 @@ const MOST_PIECES: usize = 4_000_000;
 /// Pieces are refined to this share of the radius that a quadric splat reaches on a generic
 /// smooth surface: there the third-order term `r³ / L²` meets the error, with features of
 /// size `L` a quarter of the diagonal.
-const PIECE_SHARE: f64 = 1.0 / 3.0;
+const PIECE_SHARE: f64 = 1.0 / 6.0;
 
 /// The input's surface, and what was found on the way to it.
 #[derive(Default)]

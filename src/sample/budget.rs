@@ -8,14 +8,15 @@ use crate::tolerance::{CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, FIT_SHARE, LINE_FIT_S
 /// Distances that growing a splat must keep, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Between a point and the quadric, along `k`.
+    /// Between a point and the quadric that covers it, along `k`.
     pub fit: f64,
     /// The same for a point on a feature line: two surfaces meet there, each cut somewhat
     /// outside the line, and the nearer both pass the line the less remains of a slit.
     pub line: f64,
-    /// Between the surface and the quadric where the domain's rim crosses it. What lies out
-    /// there is covered by another splat too, so twice the budget is allowed (and quantising
-    /// takes its share of that).
+    /// Between the quadric and the surface that it reaches over but need not cover, because
+    /// another splat does: twice the budget (of which quantising takes its share). The error
+    /// of a quadric grows with the third power of the distance, so this is worth a quarter of
+    /// the radius.
     pub rim: f64,
     /// How far a large domain goes on beyond what it is trusted to cover: see [`Self::padded`].
     pub pad: f64,

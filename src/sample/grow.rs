@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::backing::backed;
 use super::budget::Budget;
 use super::outline::{Outline, outlines};
-use super::region::Region;
+use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care};
@@ -92,8 +92,14 @@ pub(super) struct Domain {
     pub(super) radii: DVec2,
     pub(super) curvature: DVec2,
     pub(super) rank: u8,
-    /// How many points the ellipse reaches.
+    /// How many points the ellipse reaches and the quadric covers.
     members: usize,
+}
+
+/// Distance along `k` of a place in splat coordinates from the quadric.
+fn miss(curvature: DVec2, local: DVec3) -> f64 {
+    let uv = local.truncate();
+    (local.z - (curvature * uv * uv).element_sum()).abs()
 }
 
 impl Grower<'_> {
@@ -184,13 +190,22 @@ impl Grower<'_> {
         if !backed(self, &fitted.pose, outer, fitted.curvature, &clips, region) {
             return Err(Stop::Bare);
         }
-        let members = region.members.len();
+        // The seeds come first of the members.
+        let seeds_near = region.members.iter().take_while(|member| seeds.contains(&member.point));
+        if !seeds_near.clone().all(|member| self.near(fitted.curvature, member.local, 1.0)) {
+            return Err(Stop::Fit);
+        }
+        let near = |member: &&Member| self.near(fitted.curvature, member.local, 1.0);
+        let members = region.members.iter().filter(near).count();
         Ok(Domain { pose: fitted.pose, radii, curvature: fitted.curvature, rank: fitted.rank, members })
     }
 
-    /// Whether members and rim lie near enough to a quadric.
+    /// Whether members and rim lie near enough to a quadric not to stray from the surface.
     ///
-    /// `slack` multiplies the distances allowed.
+    /// Members farther off than the budget for fits are not covered by it ([`Self::near`]),
+    /// but may be reached over: what stands there must keep the budget for rims. Points on
+    /// lines always have to lie near, since there the surface ends. `slack` multiplies the
+    /// distances allowed.
     pub(super) fn keeps(
         &self,
         pose: &Pose,
@@ -199,16 +214,17 @@ impl Grower<'_> {
         slack: f64,
         region: &Region,
     ) -> bool {
-        let miss = |local: DVec3| {
-            let uv = local.truncate();
-            (local.z - (curvature * uv * uv).element_sum()).abs()
-        };
         let limit =
-            |point: u32| if self.surface.on_border(point) { self.budget.line } else { self.budget.fit };
-        region.members.iter().all(|member| miss(member.local) <= slack * limit(member.point))
+            |point: u32| if self.surface.on_border(point) { self.budget.line } else { self.budget.rim };
+        region.members.iter().all(|member| miss(curvature, member.local) <= slack * limit(member.point))
             && self
                 .rim(pose, outer, region)
-                .all(|point| miss(pose.to_local(point)) <= slack * self.budget.rim)
+                .all(|point| miss(curvature, pose.to_local(point)) <= slack * self.budget.rim)
+    }
+
+    /// Whether a place is near enough to a quadric to be covered by it.
+    pub(super) fn near(&self, curvature: DVec2, local: DVec3, slack: f64) -> bool {
+        miss(curvature, local) <= slack * self.budget.fit
     }
 
     /// Where the surface leaves the ellipse, as far as neighbours' joining lines tell.

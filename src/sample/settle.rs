@@ -90,13 +90,14 @@ fn finish(
     Some(Candidate { splat, pieces: pieces_within(grower, &points, region), rank })
 }
 
-/// The points well inside the domain and not cut away.
+/// The points well inside the domain, near enough to the quadric and not cut away.
 fn covered(grower: &Grower, splat: &Splat, region: &Region) -> Vec<u32> {
     let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
     let trusted = grower.budget.trusted(splat.radii);
     let inside = |member: &&Member| {
         let uv = member.local.truncate();
         disc_inside(uv, f64::from(grower.surface.margin[member.point as usize]), trusted)
+            && grower.near(splat.curvature, member.local, ROUNDED_SLACK)
             && !conics.iter().any(|conic| conic.cuts(uv))
     };
     region.members.iter().filter(inside).map(|member| member.point).collect()
