@@ -11,6 +11,7 @@ use crate::analyse::cloud_normals::NormalSource;
 use crate::analyse::cloud_surface::cloud_surface;
 use crate::analyse::mesh_surface::{Features, Found, mesh_surface};
 use crate::analyse::surface::Surface;
+use crate::analyse::thin::{Reach, thin};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
 use crate::model::asset::{Accuracy, Asset};
@@ -277,6 +278,14 @@ const MOST_PIECES: usize = 4_000_000;
 /// size `L` a quarter of the diagonal.
 const PIECE_SHARE: f64 = 1.0 / 6.0;
 
+/// A point of a cloud stands for others within this many error bounds: a fraction of the
+/// radius of the splats that a smooth surface needs, where some twenty points are fitted.
+const THIN_RADIUS: f64 = 1.5;
+
+/// A point of a cloud stands for others whose distance from its tangent plane is below this
+/// share of the error bound, so that a fit to it is as good as one to all of them.
+const THIN_OFFSET: f64 = 0.25;
+
 /// The input's surface, and what was found on the way to it.
 #[derive(Default)]
 struct Analysed {
@@ -312,7 +321,8 @@ fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> R
             let found = cloud_surface(cloud, options.normals.into(), &lines)?;
             let feature_edges = found.matched.map_or(0, |matched| matched.edges);
             let features = Found { feature_edges, matched: found.matched };
-            Ok(Analysed { surface: found.surface, features, left_out: found.left_out })
+            let reach = Reach { radius: THIN_RADIUS * max_error, offset: THIN_OFFSET * max_error };
+            Ok(Analysed { surface: thin(found.surface, reach), features, left_out: found.left_out })
         }
     }
 }

@@ -11,7 +11,7 @@ use super::line_cut::LineCut;
 use super::line_network::Network;
 use super::nearest::{Nearest, Search, spacing};
 use super::outliers::outliers;
-use super::surface::{NONE, Rows, Surface, inverse};
+use super::surface::{NONE, Rows, Spot, Surface, inverse};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 
@@ -137,6 +137,10 @@ fn assemble(
         },
         neighbours: Rows::symmetric(rows, listed),
         pieces: (0..count).map(|n| [n; 3]).collect(),
+        spots: kept
+            .iter()
+            .map(|&n| Spot { position: points.positions[n as usize], margin: joined[n as usize].margin })
+            .collect(),
         pieces_of: Rows::singles(rows, count),
         margin: kept.iter().map(|&n| joined[n as usize].margin).chain(on_lines.iter().map(|_| 0.0)).collect(),
         border_prev: inverse(&border_next),

@@ -23,4 +23,5 @@ pub mod segment_grid;
 pub mod sets;
 pub mod split;
 pub mod surface;
+pub mod thin;
 pub mod weld;

@@ -69,6 +69,7 @@ fn assemble(welded: &Welded, point_of: &[u32], vertex_of: &[u32], border_next: V
         },
         neighbours: Rows::from_pairs(vertex_of.len(), neighbours),
         pieces_of: Rows::from_pairs(vertex_of.len(), pieces_of),
+        spots: Vec::new(),
         pieces,
         margin: vec![0.0; vertex_of.len()],
         border_prev: inverse(&border_next),

@@ -71,12 +71,57 @@ impl Rows {
         Self { starts: (0..=rows).map(|row| row.min(count)).collect(), items: (0..count).collect() }
     }
 
+    /// Rows of the indices of `owner`, each in the row that it names.
+    #[must_use]
+    pub fn grouped(rows: usize, owner: &[u32]) -> Self {
+        let mut starts = vec![0_u32; rows + 1];
+        for &row in owner {
+            starts[row as usize + 1] += 1;
+        }
+        for row in 0..rows {
+            starts[row + 1] += starts[row];
+        }
+        let (mut items, mut ends) = (vec![0_u32; owner.len()], starts.clone());
+        for (item, &row) in (0_u32..).zip(owner) {
+            items[ends[row as usize] as usize] = item;
+            ends[row as usize] += 1;
+        }
+        Self { starts, items }
+    }
+
+    /// Rows of given items.
+    #[must_use]
+    pub fn from_lists(lists: &[Vec<u32>]) -> Self {
+        let lengths: Vec<u32> = lists.iter().map(|list| list.len() as u32).collect();
+        Self { items: lists.concat(), ..Self::consecutive(&lengths) }
+    }
+
+    /// Rows of given lengths that hold `0, 1, 2` and so on.
+    #[must_use]
+    pub fn consecutive(lengths: &[u32]) -> Self {
+        let mut starts = vec![0_u32; lengths.len() + 1];
+        for (row, length) in lengths.iter().enumerate() {
+            starts[row + 1] = starts[row] + length;
+        }
+        Self { items: (0..starts[lengths.len()]).collect(), starts }
+    }
+
     /// The items of a row, ascending.
     #[must_use]
     pub fn row(&self, row: u32) -> &[u32] {
         let row = row as usize;
         &self.items[self.starts[row] as usize..self.starts[row + 1] as usize]
     }
+}
+
+/// A point of a cloud that a splat has to cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spot {
+    /// Where it is, model units.
+    pub position: Vec3,
+    /// How far inside a splat it must lie to count as covered, model units: as far as it
+    /// stands for the surface around it.
+    pub margin: f32,
 }
 
 /// A sampled surface, cut along its feature lines.
@@ -95,12 +140,14 @@ pub struct Surface {
     pub colors: Vec<[u8; 3]>,
     /// For each point, those joined to it by the surface.
     pub neighbours: Rows,
-    /// What must be covered: triangles of points, or a single point three times.
+    /// What must be covered: triangles of points; for a cloud the point that stands for a
+    /// spot, three times.
     pub pieces: Vec<[u32; 3]>,
+    /// For each piece of a cloud what it is; empty for a mesh.
+    pub spots: Vec<Spot>,
     /// For each point, the pieces it is a corner of.
     pub pieces_of: Rows,
-    /// For each point, how far inside a splat it must lie to count as covered. Zero for a
-    /// mesh, whose pieces are whole triangles; the local sample spacing for a cloud.
+    /// For each point of a cloud, how far it stands for the surface around it. Zero for a mesh.
     pub margin: Vec<f32>,
     /// For each point the next one along the border, with the surface on the left; or [`NONE`].
     pub border_next: Vec<u32>,
@@ -130,23 +177,27 @@ impl Surface {
     /// The area a piece stands for, in squared model units.
     #[must_use]
     pub fn area(&self, piece: u32) -> f64 {
-        let [a, b, c] = self.pieces[piece as usize];
-        if a == b {
-            let margin = f64::from(self.margin[a as usize]);
-            return margin * margin;
+        if let Some(spot) = self.spots.get(piece as usize) {
+            return f64::from(spot.margin) * f64::from(spot.margin);
         }
-        let (a, b, c) = (self.point(a), self.point(b), self.point(c));
+        let [a, b, c] = self.pieces[piece as usize].map(|corner| self.point(corner));
         0.5 * (b - a).cross(c - a).length()
     }
 
     /// The middle of a piece.
     #[must_use]
     pub fn middle(&self, piece: u32) -> DVec3 {
-        let [a, b, c] = self.pieces[piece as usize];
-        if a == b {
-            return self.point(a);
+        if let Some(spot) = self.spots.get(piece as usize) {
+            return spot.position.as_dvec3();
         }
-        (self.point(a) + self.point(b) + self.point(c)) / 3.0
+        let [a, b, c] = self.pieces[piece as usize].map(|corner| self.point(corner));
+        (a + b + c) / 3.0
+    }
+
+    /// How far a piece stands for the surface around it, model units; 0 for a triangle.
+    #[must_use]
+    pub fn piece_margin(&self, piece: u32) -> f64 {
+        self.spots.get(piece as usize).map_or(0.0, |spot| f64::from(spot.margin))
     }
 }
 

@@ -145,7 +145,7 @@ impl Grower<'_> {
         let middle = self.surface.middle(piece);
         let normal: DVec3 = corners.iter().map(|&corner| self.surface.normal(corner)).sum();
         let reach = corners.iter().map(|&c| self.surface.point(c).distance(middle)).fold(0.0, f64::max);
-        let margin = f64::from(self.surface.margin[corners[0] as usize]);
+        let margin = self.surface.piece_margin(piece);
         // A little more than the piece, which must lie inside whatever is rounded.
         let least = (reach * 1.01).max(LEAST_MARGINS * margin).max(LEAST_SHARE * self.budget.fit);
         (Pose::at(middle, normal), least)
@@ -225,6 +225,11 @@ impl Grower<'_> {
     /// Whether a place is near enough to a quadric to be covered by it.
     pub(super) fn near(&self, curvature: DVec2, local: DVec3, slack: f64) -> bool {
         miss(curvature, local) <= slack * self.budget.fit
+    }
+
+    /// Whether a place is near enough to a quadric that it may reach over it.
+    pub(super) fn reaches(&self, curvature: DVec2, local: DVec3, slack: f64) -> bool {
+        miss(curvature, local) <= slack * self.budget.rim
     }
 
     /// Where the surface leaves the ellipse, as far as neighbours' joining lines tell.

@@ -23,7 +23,7 @@ pub fn over(grower: &Grower, piece: u32) -> Option<Candidate> {
     let mean: DVec3 = corners.iter().map(|&corner| surface.normal(corner)).sum();
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or(mean);
     let pose = Pose::at(middle, normal);
-    let margin = f64::from(surface.margin[corners[0] as usize]);
+    let margin = surface.piece_margin(piece);
     let (pose, radii) = circumellipse(&pose, &points, margin, budget.pad);
     let mut splat = rounded(grower, &pose, radii, DVec2::ZERO)?;
     let outline: Vec<DVec2> = points.iter().map(|&p| splat.to_local(p).truncate()).collect();

@@ -1,11 +1,11 @@
 //! Ends the growth of a splat: rounds it as the file will, judges it once more, cuts it.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::backing::backed;
 use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
-use super::region::{Member, Region};
+use super::region::Region;
 use crate::fit::clip::Care;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::Conic;
@@ -85,53 +85,93 @@ fn finish(
     if !backed(grower, &pose, splat.radii, splat.curvature, &splat.clips, region) {
         return None;
     }
-    let points = covered(grower, &splat, region);
-    splat.color = mean_color(grower, &points);
-    Some(Candidate { splat, pieces: pieces_within(grower, &points, region), rank })
-}
-
-/// The points well inside the domain, near enough to the quadric and not cut away.
-fn covered(grower: &Grower, splat: &Splat, region: &Region) -> Vec<u32> {
     let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
-    let trusted = grower.budget.trusted(splat.radii);
-    let inside = |member: &&Member| {
-        let uv = member.local.truncate();
-        disc_inside(uv, f64::from(grower.surface.margin[member.point as usize]), trusted)
-            && grower.near(splat.curvature, member.local, ROUNDED_SLACK)
-            && !conics.iter().any(|conic| conic.cuts(uv))
-    };
-    region.members.iter().filter(inside).map(|member| member.point).collect()
+    let domain = Covering { grower, splat: &splat, conics };
+    let pieces =
+        if grower.surface.spots.is_empty() { domain.triangles(region) } else { domain.spots(region)? };
+    splat.color = mean_color(grower, &pieces);
+    Some(Candidate { splat, pieces, rank })
 }
 
-/// The pieces all of whose corners are among some points, ascending.
-fn pieces_within(grower: &Grower, points: &[u32], region: &mut Region) -> Vec<u32> {
-    region.unmark();
-    for &point in points {
-        region.mark(point);
+/// A splat and what may tell what it covers.
+struct Covering<'a> {
+    grower: &'a Grower<'a>,
+    splat: &'a Splat,
+    conics: Vec<Conic>,
+}
+
+impl Covering<'_> {
+    /// Whether a place lies within the domain by a margin, near the quadric and not cut away.
+    fn covers(&self, local: DVec3, margin: f64) -> bool {
+        let trusted = self.grower.budget.trusted(self.splat.radii);
+        disc_inside(local.truncate(), margin, trusted)
+            && self.grower.near(self.splat.curvature, local, ROUNDED_SLACK)
+            && !self.cuts(local.truncate())
     }
-    let surface = grower.surface;
-    let mut pieces: Vec<u32> = points
-        .iter()
-        .flat_map(|&point| surface.pieces_of.row(point).iter().copied())
-        .filter(|&piece| surface.pieces[piece as usize].iter().all(|&corner| region.marked(corner)))
-        .collect();
-    pieces.sort_unstable();
-    pieces.dedup();
-    pieces
+
+    fn cuts(&self, uv: DVec2) -> bool {
+        self.conics.iter().any(|conic| conic.cuts(uv))
+    }
+
+    /// The triangles all of whose corners are covered, ascending.
+    fn triangles(&self, region: &mut Region) -> Vec<u32> {
+        let inside = region.members.iter().filter(|member| self.covers(member.local, 0.0));
+        let points: Vec<u32> = inside.map(|member| member.point).collect();
+        region.unmark();
+        for &point in &points {
+            region.mark(point);
+        }
+        let surface = self.grower.surface;
+        let mut pieces: Vec<u32> = points
+            .iter()
+            .flat_map(|&point| surface.pieces_of.row(point).iter().copied())
+            .filter(|&piece| surface.pieces[piece as usize].iter().all(|&corner| region.marked(corner)))
+            .collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
+    /// The spots that are covered, ascending; `None` if the splat strays from one it reaches.
+    fn spots(&self, region: &Region) -> Option<Vec<u32>> {
+        let surface = self.grower.surface;
+        let inside = region.members.iter().map(|member| member.point);
+        let around = region.rim.iter().map(|&(_, outside)| outside);
+        let mut pieces = Vec::new();
+        for &piece in inside.chain(around).flat_map(|point| surface.pieces_of.row(point)) {
+            let spot = surface.spots[piece as usize];
+            let local = self.splat.to_local(spot.position.as_dvec3());
+            if self.splat.ellipse(local.truncate()) > 1.0 {
+                continue;
+            }
+            if !self.grower.reaches(self.splat.curvature, local, ROUNDED_SLACK)
+                && !self.cuts(local.truncate())
+            {
+                return None;
+            }
+            if self.covers(local, f64::from(spot.margin)) {
+                pieces.push(piece);
+            }
+        }
+        pieces.sort_unstable();
+        Some(pieces)
+    }
 }
 
-/// The mean colour of some points; white where the surface has none.
-fn mean_color(grower: &Grower, points: &[u32]) -> [u8; 3] {
+/// The mean colour of the corners of some pieces; white where the surface has none.
+fn mean_color(grower: &Grower, pieces: &[u32]) -> [u8; 3] {
     let colors = &grower.surface.colors;
-    if colors.is_empty() || points.is_empty() {
+    if colors.is_empty() || pieces.is_empty() {
         return [u8::MAX; 3];
     }
     let mut sums = [0_u64; 3];
-    for &point in points {
-        for (sum, channel) in sums.iter_mut().zip(colors[point as usize]) {
-            *sum += u64::from(channel);
+    for corners in pieces.iter().map(|&piece| grower.surface.pieces[piece as usize]) {
+        for point in corners {
+            for (sum, channel) in sums.iter_mut().zip(colors[point as usize]) {
+                *sum += u64::from(channel);
+            }
         }
     }
-    let count = points.len() as u64;
+    let count = 3 * pieces.len() as u64;
     sums.map(|sum| ((sum + count / 2) / count) as u8)
 }
