@@ -3,7 +3,6 @@
 //! The error that a file states is measured on the splats as a reader will decode them.
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use crate::analyse::canonical;
 use crate::bake::{Baked, Clock, Options, Progress, StageTime, bake};
@@ -88,7 +87,7 @@ fn measured_points(input: &Input, left_out: &[u32]) -> Vec<Vec3> {
             mesh.vertices.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| *p).collect()
         }
     };
-    points.par_sort_unstable_by_key(|&point| canonical::key(point));
+    points = canonical::order(&points).into_iter().map(|n| points[n as usize]).collect();
     points.dedup();
     points
 }

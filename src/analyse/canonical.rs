@@ -1,6 +1,7 @@
 //! An order of points that does not depend on the order of the input.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 /// Spreads the low 21 bits of a number so that two zero bits follow each.
 fn spread(mut x: u64) -> u64 {
@@ -28,6 +29,19 @@ pub fn morton(p: Vec3) -> u64 {
 pub fn key(p: Vec3) -> (u64, [u32; 3]) {
     // Adding zero turns -0 into 0.
     (morton(p), (p + Vec3::ZERO).to_array().map(f32::to_bits))
+}
+
+/// The indices of positions sorted by [`key`]; equal ones in no order that means anything.
+#[must_use]
+pub fn order(positions: &[Vec3]) -> Vec<u32> {
+    // The code alone is compared first: codes are equal for few.
+    let mut coded: Vec<(u64, u32)> =
+        positions.par_iter().enumerate().map(|(n, &p)| (morton(p), n as u32)).collect();
+    coded.par_sort_unstable_by_key(|coded| coded.0);
+    for same in coded.chunk_by_mut(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+        same.sort_unstable_by_key(|&(_, n)| key(positions[n as usize]));
+    }
+    coded.into_iter().map(|(_, n)| n).collect()
 }
 
 /// A well-mixed number from an index (SplitMix64, Steele et al. 2014).

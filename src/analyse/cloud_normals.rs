@@ -1,6 +1,6 @@
 //! Normals of a cloud: the file's where they are sound, else those of the local planes.
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
@@ -61,17 +61,15 @@ pub fn normals(points: &Distinct, nearest: &Nearest, source: NormalSource) -> Re
             "--normals keep: the cloud has no sound normals; leave the option out to estimate them".into(),
         ));
     }
-    let planes: Vec<Plane> = (0..points.positions.len())
-        .into_par_iter()
-        .map(|n| plane(&points.positions, n, listed(&nearest[n])))
-        .collect();
     // A handful of kept normals among thousands of missing ones gives no signs to follow.
     if source == NormalSource::Estimate || 2 * sound < points.positions.len() {
-        let mut normals: Vec<Vec3> = planes.iter().map(|plane| plane.normal).collect();
+        let all = (0..points.positions.len()).into_par_iter();
+        let mut normals: Vec<Vec3> =
+            all.map(|n| plane(&points.positions, n, listed(&nearest[n])).normal).collect();
         orient(&points.positions, nearest, &mut normals);
         return Ok(Normals { normals, estimated: true });
     }
-    let mut normals = mended(points, nearest, &planes);
+    let mut normals = mended(points, nearest);
     if source == NormalSource::Auto && agreement(nearest, &normals) < 1.0 - RANDOM_SIGNS {
         orient(&points.positions, nearest, &mut normals);
     }
@@ -99,44 +97,77 @@ pub fn parted(
 const FEWEST: usize = 3;
 
 /// The kept normals, with planes' normals in place of missing and wild ones.
-fn mended(points: &Distinct, nearest: &Nearest, planes: &[Plane]) -> Vec<Vec3> {
-    let kept = |n: usize| {
-        let (kept, plane) = (points.normals[n], &planes[n]);
-        let wild = plane.flat && f64::from(kept.dot(plane.normal).abs()) < WILD;
-        if wild { Vec3::ZERO } else { kept }
-    };
-    (0..planes.len())
+fn mended(points: &Distinct, nearest: &Nearest) -> Vec<Vec3> {
+    let kept: Vec<Vec3> = (0..points.normals.len())
         .into_par_iter()
-        .map(|n| {
-            let own = kept(n);
+        .map(|n| if wild(points, nearest, n) { Vec3::ZERO } else { points.normals[n] })
+        .collect();
+    kept.par_iter()
+        .enumerate()
+        .map(|(n, &own)| {
             if own != Vec3::ZERO {
                 return own;
             }
-            let around: Vec3 = listed(&nearest[n]).map(|other| kept(other as usize)).sum();
-            let normal = planes[n].normal;
+            let around: Vec3 = listed(&nearest[n]).map(|other| kept[other as usize]).sum();
+            let normal = plane(&points.positions, n, listed(&nearest[n])).normal;
             if around.dot(normal) < 0.0 { -normal } else { normal }
         })
         .collect()
 }
 
+/// Whether a kept normal lies nearly in the plane of a flat neighbourhood.
+fn wild(points: &Distinct, nearest: &Nearest, n: usize) -> bool {
+    let Some(spread) = spread(&points.positions, n, listed(&nearest[n])) else { return false };
+    let kept = points.normals[n].as_dvec3();
+    // For eigenvalues `l0 <= l1 <= l2` of the spread, `l1 >= minors / (2 trace)`. A wild normal
+    // would see a variance of nearly `l1` or more: most need no eigenvectors to be told from one.
+    let least_middle = minors(&spread) / (2.0 * (spread.x_axis.x + spread.y_axis.y + spread.z_axis.z));
+    if kept.dot(spread * kept) < (1.0 - WILD * WILD) * least_middle {
+        return false;
+    }
+    let plane = plane(&points.positions, n, listed(&nearest[n]));
+    plane.flat && kept.dot(plane.normal.as_dvec3()).abs() < WILD
+}
+
+/// Sum of the principal minors of a symmetric matrix: `l0 l1 + l0 l2 + l1 l2`.
+fn minors(m: &DMat3) -> f64 {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+    x.x * y.y - x.y * x.y + x.x * z.z - x.z * x.z + y.y * z.z - y.z * y.z
+}
+
+/// The second moments of a point and others about their mean, in units of the size of the
+/// neighbourhood squared; `None` if all lie at one place.
+fn spread(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + Clone) -> Option<DMat3> {
+    let here = positions[index].as_dvec3();
+    let offsets = || others.clone().map(|other| positions[other as usize].as_dvec3() - here);
+    let (mut sum, mut size, mut count) = (DVec3::ZERO, 0.0_f64, 1.0);
+    for offset in offsets() {
+        sum += offset;
+        size = size.max(offset.abs().max_element());
+        count += 1.0;
+    }
+    if !(size > 0.0) {
+        return None;
+    }
+    let mean = sum / count;
+    let mut spread = DMat3::ZERO;
+    for offset in offsets().chain(std::iter::once(DVec3::ZERO)) {
+        // In units of the neighbourhood's size, so that the eigenvalues do not underflow.
+        let d = (offset - mean) / size;
+        spread.x_axis += d.x * d;
+        spread.y_axis += d.y * d;
+        spread.z_axis += d.z * d;
+    }
+    Some(spread)
+}
+
 /// The plane of least squares through a point and others (model units).
 #[must_use]
 pub fn plane(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + Clone) -> Plane {
-    let here = positions[index].as_dvec3();
-    let offsets = || others.clone().map(|other| positions[other as usize].as_dvec3() - here);
-    let count = offsets().count() as f64 + 1.0;
-    let mean = offsets().sum::<DVec3>() / count;
-    // In units of the neighbourhood's size, so that the eigenvalues do not underflow.
-    let size = offsets().map(|o| o.abs().max_element()).fold(0.0, f64::max);
-    if size <= 0.0 {
+    let Some(spread) = spread(positions, index, others) else {
         return Plane { normal: Vec3::Z, flat: false };
-    }
-    let mut covariance = Matrix3::zeros();
-    for offset in offsets().chain(std::iter::once(DVec3::ZERO)) {
-        let d = (offset - mean) / size;
-        let v = nalgebra::Vector3::new(d.x, d.y, d.z);
-        covariance += v * v.transpose();
-    }
+    };
+    let covariance = Matrix3::from_column_slice(&spread.to_cols_array());
     let eigen = SymmetricEigen::new(covariance);
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));

@@ -1,7 +1,6 @@
 //! The distinct points of a cloud, in an order that does not depend on the input's.
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 
 use super::canonical;
 use crate::model::cloud::Cloud;
@@ -32,20 +31,16 @@ pub fn distinct(cloud: &Cloud) -> Distinct {
     let normal = |v: u32| cloud.normals.get(v as usize).map_or(Vec3::ZERO, |&n| sound(n));
     let color = |v: u32| cloud.colors.get(v as usize).copied().unwrap_or_default();
     let said = |v: u32| ((normal(v) + Vec3::ZERO).to_array().map(f32::to_bits), color(v));
-    let mut order: Vec<(u64, u32)> =
-        (0..cloud.positions.len()).map(|v| (canonical::morton(cloud.positions[v]), v as u32)).collect();
-    order.par_sort_unstable_by(|a, b| {
-        let key = |v: u32| (canonical::key(cloud.positions[v as usize]).1, said(v));
-        a.0.cmp(&b.0).then_with(|| key(a.1).cmp(&key(b.1)))
-    });
+    let mut order = canonical::order(&cloud.positions);
     let mut found = Distinct { place: vec![0; order.len()], ..Distinct::default() };
     let position = |v: u32| cloud.positions[v as usize] + Vec3::ZERO;
-    for same in order.chunk_by(|a, b| position(a.1) == position(b.1)) {
-        for &(_, v) in same {
+    for same in order.chunk_by_mut(|&a, &b| position(a) == position(b)) {
+        for &v in &*same {
             found.place[v as usize] = found.positions.len() as u32;
         }
-        found.positions.push(position(same[0].1));
-        let mut different: Vec<u32> = same.iter().map(|&(_, v)| v).collect();
+        found.positions.push(position(same[0]));
+        same.sort_unstable_by_key(|&v| said(v));
+        let mut different = same.to_vec();
         different.dedup_by_key(|v| said(*v));
         if !cloud.normals.is_empty() {
             let sum: DVec3 = different.iter().map(|&v| normal(v).as_dvec3()).sum();

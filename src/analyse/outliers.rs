@@ -39,9 +39,12 @@ pub fn outliers(nearest: &Nearest, spacing: &[f32], joined: &[Joined], on_line: 
     let outlier: Vec<bool> = (0..count)
         .into_par_iter()
         .map(|n| {
-            let around = median(listed(&nearest[n]).map(|other| spacing[other as usize]).collect());
+            let around = || listed(&nearest[n]).map(|other| spacing[other as usize]);
             let far_off = f64::from(sizes[n]) <= handful && spacing[n] > FAR_OFF * usual;
-            spacing[n] > LONELY * around || (sizes[n] == 1 && !on_line[n]) || far_off
+            // Hardly any point is lonely beside even the densest around: most need no median.
+            let lonely = around().any(|other| spacing[n] > LONELY * other)
+                && spacing[n] > LONELY * median(around().collect());
+            lonely || (sizes[n] == 1 && !on_line[n]) || far_off
         })
         .collect();
     let found = outlier.iter().filter(|o| **o).count();

@@ -10,16 +10,19 @@ const POINTS_A_CELL: f64 = 8.0;
 /// A uniform grid over points in `[-1, 1]³`.
 pub(super) struct PointGrid {
     cell: f64,
-    /// `(cell, point)`, sorted; the cells of a row along z lie together.
-    places: Vec<([i32; 3], u32)>,
+    /// `(code of the cell, point)`, sorted; the cells of a row along z lie together.
+    places: Vec<(u64, u32)>,
 }
 
 impl PointGrid {
     pub(super) fn new(points: &[Vec3]) -> Self {
         // A surface of area about 4 spread evenly over the cells it passes.
         let cell = (4.0 * POINTS_A_CELL / points.len().max(1) as f64).sqrt();
-        let mut places: Vec<_> =
-            points.par_iter().enumerate().map(|(n, p)| (cell_of(p.as_dvec3(), cell), n as u32)).collect();
+        let mut places: Vec<_> = points
+            .par_iter()
+            .enumerate()
+            .map(|(n, p)| (code(cell_of(p.as_dvec3(), cell)), n as u32))
+            .collect();
         places.par_sort_unstable();
         Self { cell, places }
     }
@@ -29,12 +32,20 @@ impl PointGrid {
         let (low, high) = (cell_of(low, self.cell), cell_of(high, self.cell));
         (low[0]..=high[0]).flat_map(move |x| {
             (low[1]..=high[1]).flat_map(move |y| {
-                let from = self.places.partition_point(|(cell, _)| *cell < [x, y, low[2]]);
-                let row = self.places[from..].iter().take_while(move |(cell, _)| *cell <= [x, y, high[2]]);
+                let from = self.places.partition_point(|(cell, _)| *cell < code([x, y, low[2]]));
+                let row =
+                    self.places[from..].iter().take_while(move |(cell, _)| *cell <= code([x, y, high[2]]));
                 row.map(|&(_, point)| point)
             })
         })
     }
+}
+
+/// One number for a cell, that orders cells by x, then y, then z: coordinates are far below
+/// 2²⁰ in size, since even 2³² points make no more cells a side than that.
+fn code(cell: [i32; 3]) -> u64 {
+    let shifted = cell.map(|x| (i64::from(x) + (1 << 20)) as u64);
+    shifted[0] << 42 | shifted[1] << 21 | shifted[2]
 }
 
 fn cell_of(point: DVec3, cell: f64) -> [i32; 3] {
