@@ -26,9 +26,9 @@ pub struct Steps {
     pub clip: u8,
 }
 
-/// The steps this version writes: near the fewest bytes, times the growth of the discs, over 192
-/// combinations on five baked models (CAD, scans, smooth) at the default budget.
-pub const STEPS: Steps = Steps { cell: 28, height: 4, slide: 6, tilt: 22, bend: 50, spin: 16, clip: 68 };
+/// The steps this version writes: near the fewest bytes of whole bakes at the default budget
+/// (smooth, scanned), where splats are judged after rounding, so that coarser steps cost radius.
+pub const STEPS: Steps = Steps { cell: 40, height: 2, slide: 5, tilt: 80, bend: 180, spin: 80, clip: 68 };
 
 /// Largest `height` and `slide` a header may state.
 pub const MAX_SHIFT: u8 = 12;
