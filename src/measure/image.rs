@@ -115,12 +115,25 @@ fn starts(side: u32) -> impl Iterator<Item = u32> {
 /// # Errors
 /// [`Error::Usage`] if the sizes differ or a picture is empty.
 pub fn psnr(reference: &RgbImage, test: &RgbImage) -> Result<f64> {
+    mean_square(reference, test).map(decibels)
+}
+
+/// Mean square of the difference over all channels, in squared levels of 255.
+///
+/// # Errors
+/// [`Error::Usage`] if the sizes differ or a picture is empty.
+pub fn mean_square(reference: &RgbImage, test: &RgbImage) -> Result<f64> {
     same_size(reference, test)?;
     let pairs = reference.as_raw().iter().zip(test.as_raw());
     // Exact in integers: 2^64 holds the squares of 10^14 bytes.
     let sum: u64 = pairs.map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2)).sum();
-    let mean = sum as f64 / reference.as_raw().len() as f64;
-    Ok(10.0 * (255.0 * 255.0 / mean).log10())
+    Ok(sum as f64 / reference.as_raw().len() as f64)
+}
+
+/// Peak signal-to-noise ratio in decibels of a [`mean_square`]; infinite for 0.
+#[must_use]
+pub fn decibels(mean_square: f64) -> f64 {
+    10.0 * libm::log10(255.0 * 255.0 / mean_square)
 }
 
 /// The magnitude of the difference, channel by channel, `|reference - test|`, brightened `gain`
