@@ -47,11 +47,7 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
 
 /// Measures the fit of the decoded splats and holds it against the bound.
 fn measure(input: &Input, left_out: &[u32], asset: &mut Asset) -> Result<()> {
-    let model = match input {
-        Input::Mesh(mesh) => Model::Mesh(mesh),
-        Input::Cloud(cloud) => Model::Cloud(cloud),
-    };
-    let points = points(model, left_out);
+    let points = points(model(input), left_out);
     let found = fit(&points, asset, REACH * asset.max_error);
     if found.uncovered > 0 || found.accuracy.max > asset.max_error {
         return Err(Error::Internal(format!(
@@ -63,4 +59,13 @@ fn measure(input: &Input, left_out: &[u32], asset: &mut Asset) -> Result<()> {
     }
     asset.fit = found.accuracy;
     Ok(())
+}
+
+/// An input as it is drawn and measured.
+#[must_use]
+pub fn model(input: &Input) -> Model<'_> {
+    match input {
+        Input::Mesh(mesh) => Model::Mesh(mesh),
+        Input::Cloud(cloud) => Model::Cloud(cloud),
+    }
 }

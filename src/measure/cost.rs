@@ -2,11 +2,15 @@
 
 use std::time::Instant;
 
-use super::measures::{Chunk, Cost};
+use super::measures::{Chunk, Cost, GpuFrame};
 use super::views::{SIDE, View};
+#[cfg(not(feature = "gpu"))]
+use crate::error::Error;
 use crate::error::Result;
 use crate::format;
 use crate::model::asset::Asset;
+#[cfg(feature = "gpu")]
+use crate::render::gpu::Gpu;
 use crate::render::{Camera, Picture, Settings, cpu};
 
 /// How often the file is decoded for its time.
@@ -60,6 +64,29 @@ pub fn frame_ms(views: &[View], draw: &mut dyn FnMut(&Camera, &Settings) -> Resu
     let settings = Settings::plain([SIDE; 2]);
     let times = views.iter().step_by(EVERY).map(|view| seconds(|| draw(&view.camera, &settings)));
     Ok(1e3 * median(times)?)
+}
+
+/// The time of a frame on the best graphics device.
+///
+/// # Errors
+/// [`crate::Error::Device`] if there is none or it fails.
+#[cfg(feature = "gpu")]
+pub fn gpu_frame(asset: &Asset, views: &[View]) -> Result<GpuFrame> {
+    let gpu = Gpu::new()?;
+    let loaded = gpu.load(asset)?;
+    let mut draw = |camera: &Camera, settings: &Settings| loaded.draw(camera, settings);
+    // The first picture also pays for what a device puts off until it is used.
+    frame_ms(&views[..views.len().min(1)], &mut draw)?;
+    Ok(GpuFrame { adapter: gpu.info().name.clone(), frame_ms: frame_ms(views, &mut draw)? })
+}
+
+/// Stands in for the renderer that this build leaves out.
+///
+/// # Errors
+/// [`crate::Error::Device`], always.
+#[cfg(not(feature = "gpu"))]
+pub fn gpu_frame(_: &Asset, _: &[View]) -> Result<GpuFrame> {
+    Err(Error::Device("this program was built without the `gpu` feature".into()))
 }
 
 /// Seconds on the clock that some work takes.

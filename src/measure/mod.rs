@@ -2,12 +2,14 @@
 
 pub mod align;
 pub mod cost;
+pub mod edge;
 pub mod fit;
 pub mod holes;
 pub mod image;
 pub mod measures;
 mod point_grid;
 pub mod seen;
+pub mod surface;
 pub mod views;
 
 use glam::DVec3;
@@ -49,6 +51,12 @@ pub fn measure_telling(subject: &Subject<'_>, tell: &mut dyn FnMut(&'static str)
     let model = aligned.model();
     tell("fit");
     let fit = fit::fit(&fit::points(model, &[]), asset, fit::REACH * asset.max_error);
+    tell("surface");
+    let surface = surface::surface(asset, model)?;
+    tell("edge");
+    let frames = [&subject.against.cloud().frame, &asset.frame];
+    let lines = subject.lines.map(|lines| align::lines(lines, frames[0], frames[1]));
+    let edge = lines.and_then(|lines| edge::edge(asset, &lines));
     tell("views");
     let views = views::views(model);
     let seen = seen::seen(asset, &Prepared::new(model, &Style::default()), &views)?;
@@ -65,13 +73,13 @@ pub fn measure_telling(subject: &Subject<'_>, tell: &mut dyn FnMut(&'static str)
         budget: share(asset.max_error),
         fit: shares(accuracy),
         uncovered: fit.uncovered as u64,
-        forward: Distances::default(),
-        backward: Distances::default(),
-        normal: Default::default(),
-        edge: None,
+        forward: shares(surface.forward),
+        backward: shares(surface.backward),
+        normal: surface.normal,
+        edge: edge.map(shares),
         holes: seen.holes,
         image: seen.image,
         views: seen.views,
-        cost: Cost { overlap: None, fragments: seen.fragments, ..cost },
+        cost: Cost { overlap: surface.overlap, fragments: seen.fragments, ..cost },
     })
 }
