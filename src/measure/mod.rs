@@ -12,6 +12,9 @@ pub mod seen;
 pub mod surface;
 pub mod views;
 
+#[cfg(test)]
+mod planted;
+
 use glam::DVec3;
 
 use crate::error::Result;
