@@ -65,6 +65,10 @@ fn look(splats: Vec<Splat>, model: Model<'_>) -> Seen {
     seen(&asset(splats), &Prepared::new(model, &Style::default()), &views(model)).unwrap()
 }
 
+/// Where the views from `+Z` and `-Z` are among the 26.
+const FRONT: usize = 2;
+const BACK: usize = 3;
+
 /// Side of a pixel, model units.
 fn pixel(view: &View) -> f64 {
     view.height / f64::from(SIDE)
@@ -95,7 +99,7 @@ fn what_is_equal_has_no_hole_and_no_difference() {
     assert_eq!((seen.image.flip_mean, seen.image.flip_p99, seen.image.normal_flip_mean), (0.0, 0.0, 0.0));
     assert_eq!((seen.image.psnr, seen.views.len()), (99.0, 26));
     assert!((seen.image.ssim - 1.0).abs() < 1e-12, "{}", seen.image.ssim);
-    let front = &seen.views[4];
+    let front = &seen.views[FRONT];
     // The plane fills 95 % of the picture; its silhouette's band is two pixels wide.
     let band = 4.0 * 2.0 * 0.95 * f64::from(SIDE);
     let compared = f64::from(SIDE * SIDE) - band;
@@ -152,10 +156,10 @@ fn a_hole_before_another_sheet_is_seen_through() {
     let seen = look([front, squares(-0.1)].concat(), model);
     let views = views(model);
     let side = 1.0 / f64::from(ACROSS);
-    let (area, outline) = pixels(&views[4], side * side, 4.0 * side);
-    assert_eq!((views[4].name.as_str(), seen.views[4].missing, seen.holes.extra), ("front", 0, 0));
-    assert!((seen.views[4].through as f64 - area).abs() < outline, "{:?}: {area}", seen.views[4]);
-    assert_eq!((views[5].name.as_str(), seen.views[5].through), ("back", 0));
+    let (area, outline) = pixels(&views[FRONT], side * side, 4.0 * side);
+    assert_eq!((views[FRONT].name.as_str(), seen.views[FRONT].missing, seen.holes.extra), ("front", 0, 0));
+    assert!((seen.views[FRONT].through as f64 - area).abs() < outline, "{:?}: {area}", seen.views[FRONT]);
+    assert_eq!((views[BACK].name.as_str(), seen.views[BACK].through), ("back", 0));
 }
 
 #[test]
@@ -173,8 +177,9 @@ fn a_cloud_s_overhang_is_no_fault_and_its_holes_are() {
     let seen = look(splats, model);
     let views = views(model);
     let side = 1.0 / f64::from(ACROSS);
-    let (area, outline) = pixels(&views[4], side * side, 4.0 * side);
-    assert!((seen.views[4].missing as f64 - area).abs() < outline, "{:?}: {area}", seen.views[4]);
+    let (area, outline) = pixels(&views[FRONT], side * side, 4.0 * side);
+    let found = &seen.views[FRONT];
+    assert!((found.missing as f64 - area).abs() < outline && area > 4.0 * outline, "{found:?}: {area}");
 }
 
 #[test]
