@@ -184,7 +184,9 @@ mod tests {
             let on = on.unwrap();
             let p = points[on].as_dvec3();
             let normal = DVec3::new(-0.8 * p.x - 0.1, 0.4 * p.y, 1.0).normalize();
-            assert!(fit.normal(on).dot(normal).abs() > 1.0 - 1e-9);
+            // Seen from the plane of a lopsided neighbourhood, tilted by about curvature times radius,
+            // the bowl has cubic terms: (0.8 * 0.06)^3 of slope, less than 0.01 degrees.
+            assert!(fit.normal(on).cross(normal).length() < 1.2e-4);
         }
         // Past the border less what a ring reaches: the lattice's step or its diagonal.
         for past in [0.1, 0.3] {
