@@ -1,5 +1,5 @@
 //! Nearest places and areas of patches against dense sampling.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use std::f64::consts::TAU;
 

@@ -41,10 +41,10 @@ fn what_stands_out_past_a_border_is_seen_backward_only() {
     let cell = |k: i32| (f64::from(k) + 0.5) / f64::from(n) * 2.0 * 2.0_f64.sqrt() - 2.0_f64.sqrt();
     let inside =
         (0..n * n).map(|k| DVec2::new(cell(k % n), cell(k / n))).filter(|p| p.length_squared() <= 2.0);
-    let (count, sum) = inside.fold((0.0, 0.0), |(count, sum), p| {
+    let (count, sum) = inside.fold((0.0_f64, 0.0_f64), |(count, sum), p| {
         (count + 1.0, sum + (p.abs() - 1.0).max(DVec2::ZERO).length_squared())
     });
-    assert!((found.backward.rms / (sum / count as f64).sqrt() - 1.0).abs() < 5e-3, "{found:?}");
+    assert!((found.backward.rms / (sum / count).sqrt() - 1.0).abs() < 5e-3, "{found:?}");
     assert!((found.overlap.unwrap() - std::f64::consts::PI / 2.0).abs() < 1e-5);
 }
 
