@@ -10,6 +10,8 @@ pub mod fit;
 pub mod image;
 pub mod measures;
 mod patch;
+#[cfg(test)]
+mod patch_tests;
 mod patches;
 #[cfg(test)]
 mod planted;

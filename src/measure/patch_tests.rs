@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::*;
+use super::patch::Patch;
 use crate::model::clip_curve::ClipCurve;
+use crate::model::splat::Splat;
 
 /// A sequence of numbers in `[0, 1)` that looks random (SplitMix64).
 struct Dice(u64);
