@@ -7,6 +7,7 @@ mod bake;
 mod device;
 mod export;
 mod info;
+mod measure;
 mod progress;
 mod render;
 mod source;
@@ -40,6 +41,7 @@ enum Command {
     Info(info::Arguments),
     Render(render::Arguments),
     Verify(verify::Arguments),
+    Measure(measure::Arguments),
     Export(export::Arguments),
 }
 
@@ -87,6 +89,7 @@ impl Arguments {
             Command::Info(arguments) => arguments.run(),
             Command::Render(arguments) => arguments.run(&mut notes),
             Command::Verify(arguments) => arguments.run(&mut notes),
+            Command::Measure(arguments) => arguments.run(&mut notes),
             Command::Export(arguments) => arguments.run(),
         }
     }

@@ -18,9 +18,11 @@ pub mod constants;
 pub mod cpu;
 pub mod device;
 mod eye;
+mod facets;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod input;
+pub mod mesh_normals;
 pub mod picture;
 pub mod settings;
 
