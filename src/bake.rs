@@ -331,7 +331,7 @@ fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> R
         }
         Input::Cloud(cloud) => {
             let lines = match &options.edges {
-                Edges::Given(lines) => model_lines(lines, &cloud.frame),
+                Edges::Given(lines) => lines.in_model(&cloud.frame),
                 Edges::Auto | Edges::None => Vec::new(),
             };
             let found = cloud_surface(cloud, options.normals.into(), &lines)?;
@@ -342,15 +342,9 @@ fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> R
     }
 }
 
-/// Lines in model units.
-fn model_lines(lines: &Polylines, frame: &Frame) -> Vec<Vec<DVec3>> {
-    lines.lines.iter().map(|line| line.iter().map(|&point| frame.to_model(point)).collect()).collect()
-}
-
 /// The segments of lines, in model units.
 fn segments(lines: &Polylines, frame: &Frame) -> Vec<[DVec3; 2]> {
-    let lines = model_lines(lines, frame);
-    lines.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0], pair[1]]).collect()
+    lines.in_model(frame).iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0], pair[1]]).collect()
 }
 
 /// Drops the surface's colours where they are not wanted; why, if so.

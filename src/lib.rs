@@ -66,6 +66,8 @@ pub mod export;
 pub mod measure;
 pub mod render;
 pub mod report;
+#[cfg(feature = "sweep")]
+pub mod sweep;
 pub mod verify;
 
 pub use error::{Error, Result};

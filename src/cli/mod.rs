@@ -9,6 +9,7 @@ mod export;
 mod info;
 mod progress;
 mod render;
+mod report;
 mod source;
 mod verify;
 
@@ -41,6 +42,7 @@ enum Command {
     Render(render::Arguments),
     Verify(verify::Arguments),
     Export(export::Arguments),
+    Report(report::Arguments),
 }
 
 /// What a subcommand comes to.
@@ -88,6 +90,7 @@ impl Arguments {
             Command::Render(arguments) => arguments.run(&mut notes),
             Command::Verify(arguments) => arguments.run(&mut notes),
             Command::Export(arguments) => arguments.run(),
+            Command::Report(arguments) => arguments.run(&mut notes),
         }
     }
 }
