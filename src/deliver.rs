@@ -2,17 +2,14 @@
 //!
 //! The error that a file states is measured on the splats as a reader will decode them.
 
-use glam::Vec3;
-use rayon::prelude::*;
-
-use crate::analyse::canonical;
 use crate::bake::{Baked, Clock, Options, Progress, StageTime, bake};
 use crate::error::{Error, Result};
 use crate::format::{self, quantize::Quantizer};
 use crate::ingest::Input;
-use crate::measure::fit::fit;
+use crate::measure::fit::{REACH, fit, points};
 use crate::model::asset::Asset;
 use crate::model::splat::Splat;
+use crate::render::input::Model;
 
 /// A finished file and how it came about.
 #[derive(Clone, Debug)]
@@ -50,8 +47,7 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
 
 /// Measures the fit of the decoded splats and holds it against the bound.
 fn measure(input: &Input, left_out: &[u32], asset: &mut Asset) -> Result<()> {
-    let points = measured_points(input, left_out);
-    // Farther off than a few bounds lies another sheet of the surface.
+    let points = points(model(input), left_out);
     let found = fit(&points, asset, REACH * asset.max_error);
     if found.uncovered > 0 || found.accuracy.max > asset.max_error {
         return Err(Error::Internal(format!(
@@ -65,30 +61,11 @@ fn measure(input: &Input, left_out: &[u32], asset: &mut Asset) -> Result<()> {
     Ok(())
 }
 
-/// Bounds of distance within which a splat is taken to stand for a point.
-const REACH: f64 = 4.0;
-
-/// The points the bound holds for: those of a cloud that belong to its surface, those of a
-/// mesh that its triangles use.
-///
-/// Each place counts once, in an order of its own: how often an input repeats a point, along
-/// seams say, tells nothing of the surface, and neither may change the last bit of a sum.
-fn measured_points(input: &Input, left_out: &[u32]) -> Vec<Vec3> {
-    let mut points: Vec<Vec3> = match input {
-        Input::Cloud(cloud) => {
-            let mut rest = left_out.iter().peekable();
-            let all = (0_u32..).zip(&cloud.positions);
-            all.filter(|(n, _)| rest.next_if_eq(&n).is_none()).map(|(_, p)| *p).collect()
-        }
-        Input::Mesh(mesh) => {
-            let mut used = vec![false; mesh.vertices.positions.len()];
-            for &vertex in mesh.triangles.as_flattened() {
-                used[vertex as usize] = true;
-            }
-            mesh.vertices.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| *p).collect()
-        }
-    };
-    points.par_sort_unstable_by_key(|&point| canonical::key(point));
-    points.dedup();
-    points
+/// An input as it is drawn and measured.
+#[must_use]
+pub fn model(input: &Input) -> Model<'_> {
+    match input {
+        Input::Mesh(mesh) => Model::Mesh(mesh),
+        Input::Cloud(cloud) => Model::Cloud(cloud),
+    }
 }

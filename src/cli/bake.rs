@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use qsplat::bake::{Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, MaxError, Normals, Options, Shapes};
 use qsplat::error::{Error, Result};
-use qsplat::ingest::{self, Input};
+use qsplat::ingest::Input;
 use qsplat::report::{self, Report};
 use qsplat::tolerance::DEFAULT_EDGE_ANGLE;
 use qsplat::{deliver, format};
@@ -96,7 +96,7 @@ enum ClipsArgument {
     Straight,
 }
 
-fn edge_angle(text: &str) -> std::result::Result<f64, String> {
+pub(super) fn edge_angle(text: &str) -> std::result::Result<f64, String> {
     let degrees: f64 = text.parse().map_err(|_| "give an angle in degrees, such as 40".to_owned())?;
     if degrees > 0.0 && degrees <= 180.0 {
         Ok(degrees)
@@ -143,14 +143,9 @@ impl Arguments {
     }
 
     fn options(&self) -> Result<Options> {
-        let edges = match self.edges.as_str() {
-            "auto" => Edges::Auto,
-            "none" => Edges::None,
-            path => Edges::Given(ingest::read_edges(path.as_ref(), &ingest::Limits::default())?),
-        };
         Ok(Options {
             max_error: self.max_error,
-            edges,
+            edges: source::edges(&self.edges)?,
             edge_angle: self.edge_angle,
             effort: self.effort,
             normals: match self.normals {

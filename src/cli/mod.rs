@@ -7,6 +7,7 @@ mod bake;
 mod device;
 mod export;
 mod info;
+mod measure;
 mod progress;
 mod render;
 mod report;
@@ -41,6 +42,7 @@ enum Command {
     Info(info::Arguments),
     Render(render::Arguments),
     Verify(verify::Arguments),
+    Measure(measure::Arguments),
     Export(export::Arguments),
     Report(report::Arguments),
 }
@@ -89,6 +91,7 @@ impl Arguments {
             Command::Info(arguments) => arguments.run(),
             Command::Render(arguments) => arguments.run(&mut notes),
             Command::Verify(arguments) => arguments.run(&mut notes),
+            Command::Measure(arguments) => arguments.run(&mut notes),
             Command::Export(arguments) => arguments.run(),
             Command::Report(arguments) => arguments.run(&mut notes),
         }

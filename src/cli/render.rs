@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use qsplat::deliver::model;
 use qsplat::error::Result;
 use qsplat::ingest::Input;
 use qsplat::model::asset::Asset;
@@ -123,12 +124,5 @@ impl Arguments {
                 Ok(input::render(model(scene), camera, settings, &input::Style::default())?)
             }
         }
-    }
-}
-
-fn model(input: &Input) -> input::Model<'_> {
-    match input {
-        Input::Mesh(mesh) => input::Model::Mesh(mesh),
-        Input::Cloud(cloud) => input::Model::Cloud(cloud),
     }
 }

@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
+use qsplat::bake::Edges;
 use qsplat::error::{Error, Result};
 use qsplat::format;
 use qsplat::ingest::{self, Input};
@@ -24,4 +25,13 @@ pub(super) fn input(path: &Path) -> Result<Input> {
 /// Reads a `.qsplat`.
 pub(super) fn asset(path: &Path) -> Result<Asset> {
     format::read_file(path, &format::Limits::default())
+}
+
+/// Feature lines as `--edges` names them: `auto`, `none` or a file.
+pub(super) fn edges(name: &str) -> Result<Edges> {
+    Ok(match name {
+        "auto" => Edges::Auto,
+        "none" => Edges::None,
+        path => Edges::Given(ingest::read_edges(path.as_ref(), &ingest::Limits::default())?),
+    })
 }

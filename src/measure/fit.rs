@@ -6,6 +6,38 @@ use rayon::prelude::*;
 use super::point_grid::PointGrid;
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::splat::Splat;
+use crate::render::input::Model;
+
+/// Bounds of distance within which a splat is taken to stand for a point: farther off lies
+/// another sheet of the surface.
+pub const REACH: f64 = 4.0;
+
+/// The points the bound holds for: those of a cloud but for the ones `left_out`, which ascend,
+/// and those of a mesh that its triangles use.
+///
+/// Each place counts once: how often an input repeats a point, along seams say, tells nothing of
+/// the surface.
+#[must_use]
+pub fn points(model: Model<'_>, left_out: &[u32]) -> Vec<Vec3> {
+    let mut points: Vec<Vec3> = match model {
+        Model::Cloud(cloud) => {
+            let mut rest = left_out.iter().peekable();
+            let all = (0_u32..).zip(&cloud.positions);
+            all.filter(|(n, _)| rest.next_if_eq(&n).is_none()).map(|(_, p)| *p).collect()
+        }
+        Model::Mesh(mesh) => {
+            let mut used = vec![false; mesh.vertices.positions.len()];
+            for &vertex in mesh.triangles.as_flattened() {
+                used[vertex as usize] = true;
+            }
+            mesh.vertices.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| *p).collect()
+        }
+    };
+    // Adding zero turns -0 into 0: they are one place.
+    points.par_sort_unstable_by_key(|&point| (point + Vec3::ZERO).to_array().map(f32::to_bits));
+    points.dedup();
+    points
+}
 
 /// What measuring the fit found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,8 +108,21 @@ fn accuracy(distances: &[f64]) -> Accuracy {
 mod tests {
     use super::*;
     use crate::model::clip_curve::ClipCurve;
+    use crate::model::cloud::Cloud;
     use crate::model::frame::Frame;
+    use crate::model::mesh::Mesh;
     use glam::DMat3;
+
+    #[test]
+    fn a_place_counts_once_and_only_if_used() {
+        let places = [[0.0, 0.5, 0.0], [1.0, 0.0, 0.0], [-0.0, 0.5, 0.0], [0.0, 0.0, -1.0], [0.2; 3]];
+        let cloud = Cloud { positions: places.map(Vec3::from_array).to_vec(), ..Cloud::default() };
+        assert_eq!(points(Model::Cloud(&cloud), &[]).len(), 4);
+        assert!(!points(Model::Cloud(&cloud), &[1, 4]).contains(&Vec3::X));
+        let mesh = Mesh { vertices: cloud, triangles: vec![[0, 1, 3], [2, 3, 1]], dropped: 0 };
+        let used = points(Model::Mesh(&mesh), &[]);
+        assert_eq!((used.len(), used.contains(&Vec3::splat(0.2))), (3, false));
+    }
 
     #[test]
     fn planted_offsets_cuts_and_gaps_come_back() {

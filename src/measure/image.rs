@@ -43,11 +43,49 @@ pub struct Block {
 pub fn flip(reference: &RgbImage, test: &RgbImage) -> Result<FlipMap> {
     same_size(reference, test)?;
     let (width, height) = reference.dimensions();
-    let load = |picture: &RgbImage| nv_flip::FlipImageRgb8::with_data(width, height, picture.as_raw());
-    let errors = nv_flip::flip(load(reference), load(test), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
-    // Written so that a NaN counts as the greatest difference.
-    let values = errors.to_vec().into_iter().map(|v| if v >= 0.0 { v.min(1.0) } else { 1.0 }).collect();
-    Ok(FlipMap { width, height, values })
+    let mut map = FlipMap { width, height, values: vec![0.0; width as usize * height as usize] };
+    let Some([left, top, right, bottom]) = affected(reference, test) else { return Ok(map) };
+    let (across, down) = (right - left, bottom - top);
+    let load = |picture: &RgbImage| {
+        let part = image::imageops::crop_imm(picture, left, top, across, down).to_image();
+        nv_flip::FlipImageRgb8::with_data(across, down, part.as_raw())
+    };
+    let errors = nv_flip::flip(load(reference), load(test), nv_flip::DEFAULT_PIXELS_PER_DEGREE).to_vec();
+    for (row, line) in (top..bottom).zip(errors.chunks_exact(across as usize)) {
+        let start = (row * width + left) as usize;
+        for (value, &error) in map.values[start..].iter_mut().zip(line) {
+            // Written so that a NaN counts as the greatest difference.
+            *value = if error >= 0.0 { error.min(1.0) } else { 1.0 };
+        }
+    }
+    Ok(map)
+}
+
+/// Pixels that FLIP's filters reach at the default viewing distance: three standard deviations,
+/// at most 10.
+const FLIP_REACH: u32 = 10;
+
+/// The rectangle (left, top, right, bottom) outside which FLIP is 0, and what its filters read
+/// to find the values inside: around all pixels that differ, twice the filters' reach. `None`
+/// for equal pictures.
+fn affected(reference: &RgbImage, test: &RgbImage) -> Option<[u32; 4]> {
+    let (width, height) = reference.dimensions();
+    let stride = 3 * width as usize;
+    let rows = reference.as_raw().chunks_exact(stride).zip(test.as_raw().chunks_exact(stride));
+    let mut found: Option<[u32; 4]> = None;
+    for (y, (a, b)) in (0..).zip(rows) {
+        let differ = |&n: &usize| a[n] != b[n];
+        let (Some(first), Some(last)) = ((0..stride).find(differ), (0..stride).rfind(differ)) else {
+            continue;
+        };
+        let (first, last) = (first as u32 / 3, last as u32 / 3);
+        let [left, top, right, _] = found.unwrap_or([first, y, last, y]);
+        found = Some([left.min(first), top, right.max(last), y]);
+    }
+    let room = 2 * FLIP_REACH;
+    let [left, top, right, bottom] = found?;
+    let end = |last: u32, side: u32| last.saturating_add(1 + room).min(side);
+    Some([left.saturating_sub(room), top.saturating_sub(room), end(right, width), end(bottom, height)])
 }
 
 impl FlipMap {
@@ -115,12 +153,25 @@ fn starts(side: u32) -> impl Iterator<Item = u32> {
 /// # Errors
 /// [`Error::Usage`] if the sizes differ or a picture is empty.
 pub fn psnr(reference: &RgbImage, test: &RgbImage) -> Result<f64> {
+    mean_square(reference, test).map(decibels)
+}
+
+/// Mean square of the difference over all channels, in squared levels of 255.
+///
+/// # Errors
+/// [`Error::Usage`] if the sizes differ or a picture is empty.
+pub fn mean_square(reference: &RgbImage, test: &RgbImage) -> Result<f64> {
     same_size(reference, test)?;
     let pairs = reference.as_raw().iter().zip(test.as_raw());
     // Exact in integers: 2^64 holds the squares of 10^14 bytes.
     let sum: u64 = pairs.map(|(&a, &b)| u64::from(a.abs_diff(b)).pow(2)).sum();
-    let mean = sum as f64 / reference.as_raw().len() as f64;
-    Ok(10.0 * (255.0 * 255.0 / mean).log10())
+    Ok(sum as f64 / reference.as_raw().len() as f64)
+}
+
+/// Peak signal-to-noise ratio in decibels of a [`mean_square`]; infinite for 0.
+#[must_use]
+pub fn decibels(mean_square: f64) -> f64 {
+    10.0 * libm::log10(255.0 * 255.0 / mean_square)
 }
 
 /// The magnitude of the difference, channel by channel, `|reference - test|`, brightened `gain`
@@ -216,7 +267,7 @@ fn same_size(reference: &RgbImage, test: &RgbImage) -> Result<()> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
+#[allow(clippy::unwrap_used, clippy::float_cmp)]
 mod tests {
     use super::*;
 
@@ -261,6 +312,24 @@ mod tests {
         assert!((36..=44).contains(&block.x) && (16..=24).contains(&block.y), "{block:?}");
         assert!(map.mean() < 0.03 && block.mean > 0.3, "mean {} block {}", map.mean(), block.mean);
         assert!(map.quantile(0.99) > map.quantile(0.5));
+    }
+
+    #[test]
+    fn only_what_differs_is_looked_at_and_the_values_stay() {
+        let clean = RgbImage::from_fn(120, 90, |x, y| Rgb([(x * 2) as u8, (y * 31 % 200) as u8, 128]));
+        for (left, top) in [(0, 0), (50, 40), (112, 84), (119, 3)] {
+            let mut marked = clean.clone();
+            for (x, y) in
+                (left..(left + 7).min(120)).flat_map(|x| (top..(top + 5).min(90)).map(move |y| (x, y)))
+            {
+                marked.put_pixel(x, y, Rgb([255, 0, 255]));
+            }
+            let load = |picture: &RgbImage| nv_flip::FlipImageRgb8::with_data(120, 90, picture.as_raw());
+            let whole =
+                nv_flip::flip(load(&clean), load(&marked), nv_flip::DEFAULT_PIXELS_PER_DEGREE).to_vec();
+            assert_eq!(flip(&clean, &marked).unwrap().values, whole, "a patch at {left}, {top}");
+        }
+        assert_eq!(flip(&clean, &clean).unwrap().mean(), 0.0);
     }
 
     #[test]

@@ -2,9 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::{Error, Result};
+
 /// Name and version of the schema. The number grows when a key changes its meaning or goes;
 /// new keys may come without.
 pub const SCHEMA: &str = "qsplat-measure/1";
+
+/// [`Measures::kind`] of a mesh.
+pub const MESH: &str = "mesh";
+/// [`Measures::kind`] of a cloud.
+pub const CLOUD: &str = "cloud";
 
 /// Everything that is measured of a file against its input. Distances are fractions of the
 /// diagonal of the input's bounding box, angles are degrees.
@@ -14,11 +21,14 @@ pub struct Measures {
     pub schema: String,
     /// Diagonal of the input's bounding box, input units.
     pub diagonal: f64,
+    /// `mesh` or `cloud`: what the input is.
+    pub kind: String,
     /// The bound the file states.
     pub budget: f64,
     /// From each input point along the splat's normal to the quadric of a splat that covers it.
     pub fit: Distances,
-    /// Input points that no splat covers.
+    /// Input points that no splat covers. The bake leaves points of a cloud out that belong to no
+    /// surface, and covers every other.
     pub uncovered: u64,
     /// From samples of the input's surface to the union of the clipped splats.
     pub forward: Distances,
@@ -32,6 +42,8 @@ pub struct Measures {
     pub holes: Holes,
     /// The shaded picture of the splats beside that of the input.
     pub image: Image,
+    /// The same, view by view.
+    pub views: Vec<ViewMeasures>,
     /// What the file costs.
     pub cost: Cost,
 }
@@ -64,7 +76,10 @@ pub struct Holes {
     pub missing: u64,
     /// Pixels where a splat is hit and the input is not.
     pub extra: u64,
-    /// Views that have any.
+    /// Pixels where both are hit, the splats far behind: a hole in a closed surface shows its far
+    /// side. In neither number above.
+    pub through: u64,
+    /// Views with pixels that are missing or extra.
     pub views: u64,
     /// Pixels compared, over all views.
     pub pixels: u64,
@@ -85,11 +100,40 @@ pub struct Image {
     pub normal_flip_mean: f64,
 }
 
-/// What a file costs.
+/// One view: the numbers of [`Holes`] and [`Image`] before they are summed up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewMeasures {
+    /// Where it looks from, such as `right-top-front` for `(1, 1, 1)`.
+    pub name: String,
+    /// See [`Holes`].
+    pub missing: u64,
+    /// See [`Holes`].
+    pub extra: u64,
+    /// See [`Holes`].
+    pub through: u64,
+    /// See [`Holes`].
+    pub pixels: u64,
+    /// See [`Image`].
+    pub flip_mean: f64,
+    /// 99th percentile of FLIP over the pixels of this view.
+    pub flip_p99: f64,
+    /// Of this view alone.
+    pub psnr: f64,
+    /// Of this view alone.
+    pub ssim: f64,
+    /// Of this view alone.
+    pub normal_flip_mean: f64,
+}
+
+/// What a file costs. Times are medians of at least five.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// Bytes of the file.
     pub bytes: u64,
+    /// Bytes of header and table of chunks; with the chunks' coded bytes they make all.
+    pub head_bytes: u64,
+    /// The chunks in the order of the file.
+    pub chunks: Vec<Chunk>,
     /// Splats.
     pub splats: u64,
     /// Pieces of a plane.
@@ -98,6 +142,8 @@ pub struct Cost {
     pub quadric: u64,
     /// Those with at least one clip curve.
     pub clipped: u64,
+    /// Points of the input, as read.
+    pub input_points: u64,
     /// Bytes of the file for each splat.
     pub bytes_per_splat: f64,
     /// Bytes of the file for each input point.
@@ -106,10 +152,81 @@ pub struct Cost {
     pub overlap: Option<f64>,
     /// Seconds to decode the file, the median of five.
     pub decode_seconds: f64,
-    /// Decoded splat records a second, MB.
+    /// Bytes of all chunks, decoded, for each of those seconds, in MB (10^6).
     pub decode_megabytes_per_second: f64,
-    /// Milliseconds to draw one of the views on the CPU reference, the median over the views.
+    /// Milliseconds to draw a view on the CPU reference, one sample a pixel, the median over
+    /// seven views.
     pub cpu_frame_ms: f64,
-    /// Fragments of one of the views, the mean over the views: rays that met a splat.
+    /// Threads that drew them.
+    pub threads: u64,
+    /// The same on a graphics device; `None` where none was asked for.
+    pub gpu: Option<GpuFrame>,
+    /// Fragments of one of the views, the mean over the views: rays that met a splat, once for
+    /// each splat met.
     pub fragments: f64,
 }
+
+/// One chunk of the file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Chunk {
+    /// Its four characters.
+    pub name: String,
+    /// Bytes decoded.
+    pub raw_bytes: u64,
+    /// Bytes in the file.
+    pub coded_bytes: u64,
+}
+
+/// Drawing on a graphics device.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GpuFrame {
+    /// Name of the adapter.
+    pub adapter: String,
+    /// Milliseconds from the call until the picture is back in memory, one sample a pixel, the
+    /// median over seven views.
+    pub frame_ms: f64,
+}
+
+/// Bounds that the splats' surfaces may stray from the input's: the rim of a splat may lie
+/// outside all it covers.
+pub const BACKWARD_BUDGETS: f64 = 2.0;
+
+impl Measures {
+    /// What breaks a promise, one sentence each; empty where all is kept.
+    #[must_use]
+    pub fn faults(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        let distances = [
+            ("fit max", self.fit.max, self.budget),
+            ("backward max", self.backward.max, BACKWARD_BUDGETS * self.budget),
+        ];
+        for (name, value, limit) in distances {
+            // Written so that a NaN is a fault.
+            if !(value <= limit) {
+                faults.push(format!("{name} is {value:.3e} of the diagonal, more than {limit:.3e}"));
+            }
+        }
+        for (name, pixels) in [("missing", self.holes.missing), ("extra", self.holes.extra)] {
+            if pixels > 0 {
+                faults.push(format!("{pixels} pixels are {name}"));
+            }
+        }
+        if self.kind == MESH && self.uncovered > 0 {
+            faults.push(format!("{} points of the mesh are not covered", self.uncovered));
+        }
+        faults
+    }
+
+    /// The measures as indented JSON, ending in a line break.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if they cannot be written, which no finite numbers cause.
+    pub fn json(&self) -> Result<String> {
+        let json = serde_json::to_string_pretty(self);
+        json.map(|text| text + "\n").map_err(|error| Error::Internal(format!("measures: {error}")))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

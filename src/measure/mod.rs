@@ -1,16 +1,24 @@
 //! Numbers that say how good a result is: every error and cost of a file against its input.
 
+pub mod align;
+pub mod cost;
+pub mod edge;
 pub mod fit;
+pub mod holes;
 pub mod image;
 pub mod measures;
 mod point_grid;
+pub mod seen;
+pub mod surface;
+pub mod views;
 
 use glam::DVec3;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::asset::Asset;
-use crate::render::input::Model;
+use crate::render::input::{Model, Prepared, Style};
 pub use measures::Measures;
+use measures::{CLOUD, Cost, Distances, MESH, SCHEMA};
 
 /// What is measured, and against what.
 #[derive(Clone, Copy)]
@@ -21,14 +29,57 @@ pub struct Subject<'a> {
     pub asset: &'a Asset,
     /// The input it was baked from.
     pub against: Model<'a>,
-    /// The feature lines, model units; `None` leaves `edge` out.
+    /// The feature lines, in the input's model units; `None` leaves `edge` out.
     pub lines: Option<&'a [Vec<DVec3>]>,
 }
 
-/// Measures everything.
+/// Measures everything but the graphics device.
 ///
 /// # Errors
-/// [`Error::Usage`] if file and input do not belong together.
-pub fn measure(_subject: &Subject<'_>) -> Result<Measures> {
-    Err(Error::Internal("not measured yet".into()))
+/// [`crate::Error::Usage`] if file and input do not belong together.
+pub fn measure(subject: &Subject<'_>) -> Result<Measures> {
+    measure_telling(subject, &mut |_| ())
+}
+
+/// As [`measure`]; `tell` hears the name of each stage as it begins.
+///
+/// # Errors
+/// As [`measure`].
+pub fn measure_telling(subject: &Subject<'_>, tell: &mut dyn FnMut(&'static str)) -> Result<Measures> {
+    let asset = subject.asset;
+    let aligned = align::align(subject.against, asset)?;
+    let model = aligned.model();
+    tell("fit");
+    let fit = fit::fit(&fit::points(model, &[]), asset, fit::REACH * asset.max_error);
+    tell("surface");
+    let surface = surface::surface(asset, model)?;
+    tell("edge");
+    let frames = [&subject.against.cloud().frame, &asset.frame];
+    let lines = subject.lines.map(|lines| align::lines(lines, frames[0], frames[1]));
+    let edge = lines.and_then(|lines| edge::edge(asset, &lines));
+    tell("views");
+    let views = views::views(model);
+    let seen = seen::seen(asset, &Prepared::new(model, &Style::default()), &views)?;
+    tell("cost");
+    let cost = cost::cost(subject.bytes, asset, model.cloud().positions.len(), &views)?;
+    // An asset of one point has no diagonal: its errors are zero, not infinite.
+    let share = |length: f64| if asset.diagonal > 0.0 { length / asset.diagonal } else { 0.0 };
+    let accuracy = Distances { rms: fit.accuracy.rms, p99: fit.accuracy.p99, max: fit.accuracy.max };
+    let shares = |d: Distances| Distances { rms: share(d.rms), p99: share(d.p99), max: share(d.max) };
+    Ok(Measures {
+        schema: SCHEMA.into(),
+        diagonal: asset.diagonal * asset.frame.scale(),
+        kind: if matches!(model, Model::Mesh(_)) { MESH } else { CLOUD }.into(),
+        budget: share(asset.max_error),
+        fit: shares(accuracy),
+        uncovered: fit.uncovered as u64,
+        forward: shares(surface.forward),
+        backward: shares(surface.backward),
+        normal: surface.normal,
+        edge: edge.map(shares),
+        holes: seen.holes,
+        image: seen.image,
+        views: seen.views,
+        cost: Cost { overlap: surface.overlap, fragments: seen.fragments, ..cost },
+    })
 }

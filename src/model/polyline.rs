@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use super::frame::Frame;
-
 /// Polylines in *input* coordinates (64 bits): where the surface has sharp edges or ends.
 ///
 /// A closed line repeats its first point at the end.
@@ -14,12 +12,6 @@ pub struct Polylines {
 }
 
 impl Polylines {
-    /// The lines in model units.
-    #[must_use]
-    pub fn in_model(&self, frame: &Frame) -> Vec<Vec<DVec3>> {
-        self.lines.iter().map(|line| line.iter().map(|&point| frame.to_model(point)).collect()).collect()
-    }
-
     /// Number of segments over all lines.
     #[must_use]
     pub fn segments(&self) -> usize {

@@ -6,17 +6,16 @@ use super::camera::Camera;
 use super::constants::{self, MATTE};
 use super::cpu;
 use super::eye::{Eye, Ray};
+use super::facets::{self, Facets};
 use super::intersect::{self, LocalRay};
-use super::picture::{Picture, Visibility};
+use super::picture::{Picture, Survey, Visibility};
 use super::project::{self, Bound, Prism};
 use super::settings::Settings;
 use super::shade;
-use super::smooth;
 use super::tiles::{Hit, Look, Mix, Scene};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 use crate::model::mesh::Mesh;
-use crate::tolerance::DEFAULT_EDGE_ANGLE;
 
 /// What can be drawn besides an asset.
 #[derive(Clone, Copy, Debug)]
@@ -80,19 +79,7 @@ impl Model<'_> {
 /// # Errors
 /// As [`cpu::render`].
 pub fn render(model: Model<'_>, camera: &Camera, settings: &Settings, style: &Style) -> Result<Picture> {
-    let eye = Eye::new(camera, &model.cloud().frame, settings.samples()?)?;
-    let radius = 0.5 * model.diagonal();
-    match model {
-        Model::Mesh(mesh) => {
-            cpu::picture(&Facets::new(mesh, &eye, style.normals), &eye, Mix::Nearest, settings, radius)
-        }
-        Model::Cloud(cloud) => {
-            let discs = Discs::new(cloud, &eye, style, model.diagonal());
-            // Discs of one surface overlap by less than their radius along the normal.
-            let mix = Mix::Band { band: discs.radius, agree: constants::agree_cosine() };
-            cpu::picture(&discs, &eye, mix, settings, radius)
-        }
-    }
+    Prepared::new(model, style).render(camera, settings)
 }
 
 /// What each pixel's ray meets first.
@@ -100,11 +87,108 @@ pub fn render(model: Model<'_>, camera: &Camera, settings: &Settings, style: &St
 /// # Errors
 /// As [`cpu::render`].
 pub fn visibility(model: Model<'_>, camera: &Camera, size: [u32; 2], style: &Style) -> Result<Visibility> {
-    let eye = Eye::new(camera, &model.cloud().frame, Settings::plain(size).samples()?)?;
-    Ok(match model {
-        Model::Mesh(mesh) => cpu::nearest(&Facets::new(mesh, &eye, style.normals), &eye),
-        Model::Cloud(cloud) => cpu::nearest(&Discs::new(cloud, &eye, style, model.diagonal()), &eye),
-    })
+    Prepared::new(model, style).visibility(camera, size)
+}
+
+/// A model with all that does not change from camera to camera.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    model: Model<'a>,
+    normals: Normals,
+    /// See [`facets::corner_normals`].
+    corners: Vec<[Vec3; 3]>,
+    /// Of a cloud's discs, model units; 0 for a mesh.
+    disc: f64,
+    /// Half the diagonal, model units.
+    radius: f64,
+}
+
+impl<'a> Prepared<'a> {
+    /// Makes a model ready.
+    #[must_use]
+    pub fn new(model: Model<'a>, style: &Style) -> Self {
+        let diagonal = model.diagonal();
+        let (corners, disc) = match model {
+            Model::Mesh(mesh) => (facets::corner_normals(mesh, style.normals), 0.0),
+            Model::Cloud(cloud) => (Vec::new(), disc(cloud, style, diagonal)),
+        };
+        Self { model, normals: style.normals, corners, disc, radius: 0.5 * diagonal }
+    }
+
+    /// Radius of the discs that a cloud is drawn as, model units; 0 for a mesh.
+    #[must_use]
+    pub fn disc(&self) -> f64 {
+        self.disc
+    }
+
+    /// As [`render`].
+    ///
+    /// # Errors
+    /// As [`cpu::render`].
+    pub fn render(&self, camera: &Camera, settings: &Settings) -> Result<Picture> {
+        let eye = self.eye(camera, settings)?;
+        match self.model {
+            Model::Mesh(mesh) => {
+                cpu::picture(&self.facets(mesh, &eye), &eye, self.mix(), settings, self.radius)
+            }
+            Model::Cloud(cloud) => {
+                cpu::picture(&self.discs(cloud, &eye), &eye, self.mix(), settings, self.radius)
+            }
+        }
+    }
+
+    /// As [`visibility`].
+    ///
+    /// # Errors
+    /// As [`cpu::render`].
+    pub fn visibility(&self, camera: &Camera, size: [u32; 2]) -> Result<Visibility> {
+        let eye = self.eye(camera, &Settings::plain(size))?;
+        Ok(match self.model {
+            Model::Mesh(mesh) => cpu::nearest(&self.facets(mesh, &eye), &eye),
+            Model::Cloud(cloud) => cpu::nearest(&self.discs(cloud, &eye), &eye),
+        })
+    }
+
+    /// As [`cpu::survey`].
+    ///
+    /// # Errors
+    /// As [`cpu::render`].
+    pub fn survey(&self, camera: &Camera, size: [u32; 2]) -> Result<Survey> {
+        let eye = self.eye(camera, &Settings::plain(size))?;
+        match self.model {
+            Model::Mesh(mesh) => cpu::survey_of(&self.facets(mesh, &eye), &eye, self.mix(), self.radius),
+            Model::Cloud(cloud) => cpu::survey_of(&self.discs(cloud, &eye), &eye, self.mix(), self.radius),
+        }
+    }
+
+    fn eye(&self, camera: &Camera, settings: &Settings) -> Result<Eye> {
+        Eye::new(camera, &self.model.cloud().frame, settings.samples()?)
+    }
+
+    /// Triangles are drawn as they are. Discs of one surface overlap by less than their radius
+    /// along the normal.
+    fn mix(&self) -> Mix {
+        match self.model {
+            Model::Mesh(_) => Mix::Nearest,
+            Model::Cloud(_) => Mix::Band { band: self.disc, agree: constants::agree_cosine() },
+        }
+    }
+
+    fn facets<'b>(&'b self, mesh: &'b Mesh, eye: &'b Eye) -> Facets<'b> {
+        Facets::new(mesh, eye, self.normals, &self.corners)
+    }
+
+    fn discs<'b>(&self, cloud: &'b Cloud, eye: &'b Eye) -> Discs<'b> {
+        Discs { cloud, eye, radius: self.disc }
+    }
+}
+
+/// Radius of a cloud's discs, model units.
+fn disc(cloud: &Cloud, style: &Style, diagonal: f64) -> f64 {
+    let given = style.point_radius.map(|radius| radius / cloud.frame.scale());
+    let radius = given.unwrap_or_else(|| disc_radius(diagonal, cloud.positions.len()));
+    // A single point has no diagonal: any radius that shows it will do.
+    if radius > 0.0 { radius } else { 0.1 }
 }
 
 /// Discs that just cover a surface of area `diagonal²`, about that of a cube or a ball, if
@@ -115,93 +199,14 @@ pub fn disc_radius(diagonal: f64, count: usize) -> f64 {
 }
 
 /// A point's linear colour.
-fn color(cloud: &Cloud, point: usize) -> Vec3 {
+pub(super) fn color(cloud: &Cloud, point: usize) -> Vec3 {
     let given = cloud.colors.get(point).map(|rgb| Vec3::from(rgb.map(shade::linear_from_byte)));
     given.unwrap_or(DVec3::from(MATTE).as_vec3())
 }
 
 /// A point's unit normal, if the file gives a sound one.
-fn given_normal(cloud: &Cloud, point: usize) -> Option<DVec3> {
+pub(super) fn given_normal(cloud: &Cloud, point: usize) -> Option<DVec3> {
     cloud.normals.get(point)?.as_dvec3().try_normalize()
-}
-
-/// A mesh before a camera.
-struct Facets<'a> {
-    mesh: &'a Mesh,
-    eye: &'a Eye,
-    /// Vertices in view coordinates.
-    places: Vec<DVec3>,
-    /// Corner normals in model coordinates; empty when the file's or the faces' serve.
-    corners: Vec<[Vec3; 3]>,
-    normals: Normals,
-}
-
-impl<'a> Facets<'a> {
-    fn new(mesh: &'a Mesh, eye: &'a Eye, normals: Normals) -> Self {
-        let places = mesh.vertices.positions.iter().map(|p| eye.to_view(p.as_dvec3())).collect();
-        let corners = match normals {
-            Normals::Given if !mesh.vertices.normals.is_empty() => Vec::new(),
-            Normals::Given => smooth::corner_normals(mesh, DEFAULT_EDGE_ANGLE),
-            Normals::Crease(degrees) => smooth::corner_normals(mesh, degrees),
-            Normals::Flat => Vec::new(),
-        };
-        Self { mesh, eye, places, corners, normals }
-    }
-
-    fn corners(&self, item: usize) -> [DVec3; 3] {
-        self.mesh.triangles[item].map(|vertex| self.places[vertex as usize])
-    }
-
-    /// The smooth normals of a triangle's corners, in view coordinates.
-    fn smooth(&self, item: usize) -> Option<[DVec3; 3]> {
-        if let Some(corners) = self.corners.get(item) {
-            return Some(corners.map(|n| self.eye.turn(n.as_dvec3())));
-        }
-        if self.normals == Normals::Flat {
-            return None;
-        }
-        let [a, b, c] = self.mesh.triangles[item].map(|v| given_normal(&self.mesh.vertices, v as usize));
-        Some([a?, b?, c?].map(|n| self.eye.turn(n)))
-    }
-}
-
-impl Scene for Facets<'_> {
-    fn len(&self) -> usize {
-        self.mesh.triangles.len()
-    }
-
-    fn bound(&self, item: usize) -> Option<Bound> {
-        project::triangle_bound(self.corners(item), self.eye)
-    }
-
-    /// Woop, Benthin and Wald 2013: in the plane across the ray an edge's area is the same
-    /// number, but for its sign, for both triangles beside it, so no ray slips between them.
-    fn hit(&self, item: usize, ray: &Ray) -> Option<Hit> {
-        let corners = self.corners(item);
-        let [a, b, c] = corners.map(|p| p.truncate() - ray.at(p.z));
-        let (wa, wb, wc) = (c.perp_dot(b), a.perp_dot(c), b.perp_dot(a));
-        let inside = (wa >= 0.0 && wb >= 0.0 && wc >= 0.0) || (wa <= 0.0 && wb <= 0.0 && wc <= 0.0);
-        let total = wa + wb + wc;
-        if !inside || total == 0.0 {
-            return None;
-        }
-        let at = DVec2::new(wb, wc) / total;
-        let depth =
-            corners[0].z + at.x * (corners[1].z - corners[0].z) + at.y * (corners[2].z - corners[0].z);
-        (depth >= self.eye.near).then_some(Hit { depth, at, ellipse: 0.0 })
-    }
-
-    fn look(&self, item: usize, at: DVec2) -> Look {
-        let weights = [1.0 - at.x - at.y, at.x, at.y];
-        let [a, b, c] = self.corners(item);
-        let flat = (b - a).cross(c - a).normalize_or_zero();
-        let blend =
-            |n: [DVec3; 3]| (weights[0] * n[0] + weights[1] * n[1] + weights[2] * n[2]).try_normalize();
-        let normal = self.smooth(item).and_then(blend).unwrap_or(flat);
-        let colors = self.mesh.triangles[item].map(|vertex| color(&self.mesh.vertices, vertex as usize));
-        let color = (0..3).map(|n| weights[n] as f32 * colors[n]).sum();
-        Look { normal, color }
-    }
 }
 
 /// A cloud before a camera.
@@ -211,14 +216,7 @@ struct Discs<'a> {
     radius: f64,
 }
 
-impl<'a> Discs<'a> {
-    fn new(cloud: &'a Cloud, eye: &'a Eye, style: &Style, diagonal: f64) -> Self {
-        let given = style.point_radius.map(|radius| radius / cloud.frame.scale());
-        let radius = given.unwrap_or_else(|| disc_radius(diagonal, cloud.positions.len()));
-        // A single point has no diagonal: any radius that shows it will do.
-        Self { cloud, eye, radius: if radius > 0.0 { radius } else { 0.1 } }
-    }
-
+impl Discs<'_> {
     fn center(&self, item: usize) -> DVec3 {
         self.eye.to_view(self.cloud.positions[item].as_dvec3())
     }

@@ -18,6 +18,7 @@ pub mod constants;
 pub mod cpu;
 pub mod device;
 mod eye;
+mod facets;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod input;

@@ -33,6 +33,20 @@ pub struct Seen {
     pub normal: [f32; 3],
 }
 
+/// What one camera sees, one sample a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// What each pixel's ray meets first. Index and normal are of the blended surface, which
+    /// changes neither what is hit nor its depth.
+    pub visibility: Visibility,
+    /// The lit surface over the default background.
+    pub shaded: Picture,
+    /// Its normals, as [`super::Show::Normals`] gives them, over the default background.
+    pub normals: Picture,
+    /// Meetings of a ray with a splat, triangle or point, at any depth, over all pixels.
+    pub fragments: u64,
+}
+
 impl Visibility {
     /// What a pixel sees.
     #[must_use]

@@ -62,6 +62,8 @@ pub struct Pixel {
     pub color: Vec3,
     /// The ray for each unit of view depth.
     pub direction: DVec3,
+    /// Items that the ray met, at any depth.
+    pub met: u32,
 }
 
 /// How the hits of one pixel come together.
@@ -191,9 +193,11 @@ impl Tile<'_> {
     fn visibility<S: Scene>(&self, scene: &S, rects: &[Rect], here: &[u32]) -> Vec<Option<Pixel>> {
         let count = (self.area.x[1] - self.area.x[0]) * (self.area.y[1] - self.area.y[0]);
         let mut nearest: Vec<Option<(Hit, usize)>> = vec![None; count as usize];
+        let mut met = vec![0_u32; count as usize];
         for item in here.iter().map(|&n| n as usize) {
             self.samples(&rects[item], |place, ray| {
                 let Some(hit) = scene.hit(item, ray) else { return };
+                met[place] += 1;
                 if nearest[place].is_none_or(|(old, _)| hit.depth < old.depth) {
                     nearest[place] = Some((hit, item));
                 }
@@ -204,7 +208,7 @@ impl Tile<'_> {
             pixels[place] = nearest[place].map(|(hit, item)| {
                 let (look, direction) = (scene.look(item, hit.at), ray.direction());
                 let normal = composite::face(look.normal, direction);
-                Pixel { item, depth: hit.depth, normal, color: look.color, direction }
+                Pixel { item, depth: hit.depth, normal, color: look.color, direction, met: met[place] }
             });
         });
         pixels

@@ -26,7 +26,9 @@ pub struct View {
     pub passed: bool,
     /// Numbers beside their limits.
     pub numbers: Vec<Number>,
-    /// Pictures of one size, side by side.
+    /// Facts about the view, one a line.
+    pub notes: Vec<String>,
+    /// Pictures of one size, side by side; without any, the view is in the table alone.
     pub pictures: Vec<Picture>,
     /// The place to look at.
     pub mark: Option<Mark>,
@@ -84,14 +86,12 @@ impl Page {
              <h1>{title}</h1>\n<p class=\"verdict {}\">{verdict}</p>\n",
             class(self.passed)
         );
-        if !self.notes.is_empty() {
-            let items: String = self.notes.iter().map(|note| format!("<li>{}</li>", escape(note))).collect();
-            let _ = writeln!(html, "<ul class=\"notes\">{items}</ul>");
-        }
+        html.push_str(&list(&self.notes));
         html.push_str(&self.contents());
         // What failed comes first; within that, the order given.
         for passed in [false, true] {
-            self.views.iter().filter(|view| view.passed == passed).for_each(|view| view.write(&mut html));
+            let shown = self.views.iter().filter(|view| view.passed == passed && !view.pictures.is_empty());
+            shown.for_each(|view| view.write(&mut html));
         }
         html.push_str("</body>\n</html>\n");
         html
@@ -119,10 +119,8 @@ impl View {
         };
         let (name, cells) = (escape(&self.name), self.numbers.iter().map(cell).collect::<String>());
         let word = if self.passed { "passed" } else { "FAILED" };
-        format!(
-            "<tr><td><a href=\"#{name}\">{name}</a></td><td class=\"{}\">{word}</td>{cells}</tr>\n",
-            class(self.passed)
-        )
+        let name = if self.pictures.is_empty() { name } else { format!("<a href=\"#{name}\">{name}</a>") };
+        format!("<tr><td>{name}</td><td class=\"{}\">{word}</td>{cells}</tr>\n", class(self.passed))
     }
 
     fn write(&self, html: &mut String) {
@@ -133,6 +131,7 @@ impl View {
             "<section id=\"{name}\">\n<h2>{name} <span class=\"{}\">{word}</span></h2>\n",
             class(self.passed)
         );
+        html.push_str(&list(&self.notes));
         html.push_str("<div class=\"pictures\">\n");
         for picture in &self.pictures {
             let (caption, file) = (escape(picture.caption), escape(&picture.file));
@@ -169,6 +168,12 @@ impl Mark {
     }
 }
 
+/// Notes as a list; nothing without any.
+fn list(notes: &[String]) -> String {
+    let items: String = notes.iter().map(|note| format!("<li>{}</li>", escape(note))).collect();
+    if items.is_empty() { items } else { format!("<ul class=\"notes\">{items}</ul>\n") }
+}
+
 fn class(passed: bool) -> &'static str {
     if passed { "good" } else { "bad" }
 }
@@ -199,6 +204,7 @@ mod tests {
             name: name.into(),
             passed,
             numbers: vec![number(passed)],
+            notes: vec![],
             pictures: vec![Picture { caption: "golden", file: format!("{name}-golden.png") }],
             mark: Some(Mark { x: 0.5, y: 0.25, width: 0.125, height: 0.125 }),
         };
@@ -216,6 +222,16 @@ mod tests {
     fn names_cannot_break_the_page() {
         let html = page().html();
         assert!(html.contains("part &lt;1&gt; &amp; &quot;2&quot;") && !html.contains("<1>"));
+    }
+
+    #[test]
+    fn a_view_without_pictures_is_in_the_table_alone() {
+        let mut page = page();
+        page.views[0].pictures.clear();
+        page.views[1].notes.push("splat <7>".into());
+        let html = page.html();
+        assert!(html.contains("<td>good</td>") && !html.contains("section id=\"good\""));
+        assert!(html.contains("section id=\"poor\"") && html.contains("<li>splat &lt;7&gt;</li>"));
     }
 
     #[test]

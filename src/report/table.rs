@@ -63,10 +63,10 @@ impl Report {
 
 /// Text in two columns.
 #[derive(Default)]
-struct Table(String);
+pub(super) struct Table(pub(super) String);
 
 impl Table {
-    fn row(&mut self, name: &str, value: impl AsRef<str>) {
+    pub(super) fn row(&mut self, name: &str, value: impl AsRef<str>) {
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "{name:<14}{}", value.as_ref());
     }

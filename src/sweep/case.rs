@@ -3,11 +3,9 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-use glam::DVec3;
-
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
-use crate::bake::{Edges, Silent};
+use crate::bake::{Edges, Options, Silent, feature_lines};
 use crate::deliver::deliver;
 use crate::error::{Error, Result};
 use crate::format;
@@ -29,8 +27,6 @@ const PICTURE_SIZE: [u32; 2] = [280, 280];
 pub(super) struct Subject {
     pub(super) input: Input,
     pub(super) edges: Edges,
-    /// The given feature lines in model units.
-    pub(super) lines: Option<Vec<Vec<DVec3>>>,
 }
 
 /// PNGs of a case: shaded, and each splat in a colour of its own.
@@ -57,16 +53,17 @@ pub(super) fn run(subject: &Subject, setting: &Setting, frames: usize) -> (Case,
 }
 
 fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outcome, Pictures)> {
-    let options = crate::bake::Options { edges: subject.edges.clone(), ..setting.options() };
+    let options = Options { edges: subject.edges.clone(), ..setting.options() };
     let delivery = deliver(&subject.input, &options, &mut Silent)?;
     let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
     let info = format::inspect(&delivery.bytes, &format::Limits::default())?;
     let file = report::File::new("".as_ref(), &info);
+    let lines = feature_lines(&subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
     let measures = measure(&measure::Subject {
         bytes: &delivery.bytes,
         asset: &delivery.asset,
         against: model(&subject.input),
-        lines: subject.lines.as_deref(),
+        lines: lines.as_deref(),
     })?;
     let outcome = Outcome {
         bake_seconds: run.wall_seconds,

@@ -74,16 +74,12 @@ fn blank(path: &Path, plan: &Plan) -> Model {
 fn subject(path: &Path, plan: &Plan) -> Result<Subject> {
     let limits = ingest::Limits::default();
     let input = ingest::read(path, &limits)?;
-    let (edges, lines) = match (&plan.lines, plan.lines.of(path)) {
-        (_, Some(file)) => {
-            let given = ingest::read_edges(&file, &limits)?;
-            let lines = given.in_model(&input.cloud().frame);
-            (Edges::Given(given), Some(lines))
-        }
-        (Lines::None, None) => (Edges::None, None),
-        (_, None) => (Edges::Auto, None),
+    let edges = match (&plan.lines, plan.lines.of(path)) {
+        (_, Some(file)) => Edges::Given(ingest::read_edges(&file, &limits)?),
+        (Lines::None, None) => Edges::None,
+        (_, None) => Edges::Auto,
     };
-    Ok(Subject { input, edges, lines })
+    Ok(Subject { input, edges })
 }
 
 /// What a worker tells: a case began, or it ended.

@@ -82,6 +82,7 @@ fn section(verdict: &Verdict, compared: &Compared, pictures: Vec<Picture>) -> Vi
             told("PSNR", psnr),
             told("SSIM", format!("{:.5}", scores.ssim)),
         ],
+        notes: Vec::new(),
         pictures,
         mark: (scores.block.mean > 0.0).then(|| mark(compared)),
     }

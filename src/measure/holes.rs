@@ -1,0 +1,248 @@
+//! `holes`: pixels where only one of input and splats is hit.
+//!
+//! A pixel is compared unless it lies in the band along the input's silhouette. The silhouette
+//! is the outline of the set of pixels whose ray hits the input, and the band is every pixel
+//! with one of the other set among its eight neighbours. Where one part of the input hides
+//! another, the set has no outline: such pixels are compared.
+//!
+//! A cloud is drawn as discs, which overhang its surface by their radius. Inside, its band is
+//! therefore wider by that radius: what is left is surrounded by points on all sides.
+//!
+//! A hole in a closed surface shows the surface's far side, so that both are hit there. Pixels
+//! where the splats lie farther behind than all that the input shows in the nine pixels around
+//! are counted as seen *through*.
+
+use image::{Rgb, RgbImage};
+
+use super::views::View;
+use crate::model::asset::Asset;
+use crate::render::input::Prepared;
+use crate::render::picture::Visibility;
+
+/// Width of the band along the silhouette on either side, pixels.
+const BAND: u32 = 1;
+
+/// Error bounds by which the nearest splat must lie behind the input to be seen through. Two
+/// splats over one point are within one bound of it each, at their rims within two.
+const BEHIND: f64 = 4.0;
+
+/// What white becomes behind the faults, and by how much contrast is lessened: they stand out.
+const PALEST: u8 = 245;
+const PALER: u8 = 3;
+
+/// What a pixel came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// In the band along the silhouette: not compared.
+    Silhouette,
+    /// Both are hit or neither.
+    Same,
+    /// The input is hit and no splat is.
+    Missing,
+    /// A splat is hit and the input is not.
+    Extra,
+    /// Both are hit, the splats far behind.
+    Through,
+}
+
+impl Mark {
+    /// The marks that are faults.
+    pub const FAULTS: [Self; 3] = [Self::Missing, Self::Extra, Self::Through];
+
+    /// Colour of a fault in pictures: red, blue, orange.
+    #[must_use]
+    pub fn color(self) -> Option<Rgb<u8>> {
+        match self {
+            Self::Missing => Some(Rgb([225, 0, 0])),
+            Self::Extra => Some(Rgb([0, 60, 255])),
+            Self::Through => Some(Rgb([255, 140, 0])),
+            Self::Silhouette | Self::Same => None,
+        }
+    }
+}
+
+/// What each pixel of a view came to, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HoleMap {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// As many as pixels.
+    pub marks: Vec<Mark>,
+}
+
+/// What the comparison of a view depends on besides the two visibilities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Width of the band inside the silhouette, pixels.
+    pub inner: u32,
+    /// How far behind is through, model units.
+    pub behind: f64,
+}
+
+impl Rules {
+    /// For a view of `side` pixels: of a mesh, or of a cloud with its discs.
+    #[must_use]
+    pub fn new(asset: &Asset, input: &Prepared<'_>, view: &View, side: u32) -> Self {
+        let overhang = input.disc() / view.height * f64::from(side);
+        // Written so that even discs as large as the picture give a width.
+        let inner = BAND + overhang.ceil().min(f64::from(side)) as u32;
+        Self { inner, behind: BEHIND * asset.max_error + input.disc() }
+    }
+}
+
+/// Compares what two visibilities of one size and camera hit.
+#[must_use]
+pub fn compare(input: &Visibility, splats: &Visibility, rules: &Rules) -> HoleMap {
+    let size = input.size;
+    let hits = Counts::of(input);
+    let marks = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let marks = marks.map(|(x, y)| {
+        let inside = input.at(x, y);
+        let width = if inside.is_some() { rules.inner } else { BAND };
+        match (inside, splats.at(x, y)) {
+            _ if !hits.uniform(x, y, width, inside.is_some()) => Mark::Silhouette,
+            (Some(_), None) => Mark::Missing,
+            (None, Some(_)) => Mark::Extra,
+            // The first is the quick answer to most, the second the rule.
+            (Some(own), Some(hit))
+                if hit.depth > own.depth + rules.behind
+                    && hit.depth > farthest(input, x, y) + rules.behind =>
+            {
+                Mark::Through
+            }
+            _ => Mark::Same,
+        }
+    });
+    HoleMap { size, marks: marks.collect() }
+}
+
+/// The greatest depth that the nine pixels around one show.
+fn farthest(seen: &Visibility, x: u32, y: u32) -> f64 {
+    let around =
+        (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| (x, y)));
+    let inside = around.filter(|&(x, y)| x < seen.size[0] && y < seen.size[1]);
+    inside.filter_map(|(x, y)| seen.at(x, y)).map(|hit| hit.depth).fold(f64::NEG_INFINITY, f64::max)
+}
+
+impl HoleMap {
+    /// How many pixels have a mark.
+    #[must_use]
+    pub fn count(&self, mark: Mark) -> u64 {
+        self.marks.iter().filter(|&&other| other == mark).count() as u64
+    }
+
+    /// How many pixels were compared.
+    #[must_use]
+    pub fn compared(&self) -> u64 {
+        self.marks.len() as u64 - self.count(Mark::Silhouette)
+    }
+
+    /// The pixels with a fault.
+    pub fn faults(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let faulty = self.marks.iter().enumerate().filter(|(_, mark)| Mark::FAULTS.contains(mark));
+        faulty.map(|(n, _)| (n as u32 % self.size[0], n as u32 / self.size[0]))
+    }
+
+    /// A picture of the view, pale, with the faults in their colours.
+    #[must_use]
+    pub fn picture(&self, view: &RgbImage) -> RgbImage {
+        let pale = |byte: u8| PALEST - (u8::MAX - byte) / PALER;
+        let mut picture = view.clone();
+        for (pixel, mark) in picture.pixels_mut().zip(&self.marks) {
+            *pixel = mark.color().unwrap_or(Rgb(pixel.0.map(pale)));
+        }
+        picture
+    }
+}
+
+/// How many pixels are hit in any rectangle from the corner (a summed-area table, Crow 1984).
+struct Counts {
+    size: [u32; 2],
+    sums: Vec<u32>,
+}
+
+impl Counts {
+    fn of(seen: &Visibility) -> Self {
+        let stride = seen.size[0] as usize + 1;
+        let mut sums = vec![0; stride * (seen.size[1] as usize + 1)];
+        for (y, row) in seen.seen.chunks_exact(stride - 1).enumerate() {
+            let mut along = 0;
+            for (x, hit) in row.iter().enumerate() {
+                along += u32::from(hit.is_some());
+                sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + along;
+            }
+        }
+        Self { size: seen.size, sums }
+    }
+
+    /// Whether all pixels within `width` of one are as it is; beyond the picture nothing is hit.
+    fn uniform(&self, x: u32, y: u32, width: u32, hit: bool) -> bool {
+        let span = |at: u32, side: u32| [at.saturating_sub(width), at.saturating_add(width + 1).min(side)];
+        let ([left, right], [top, bottom]) = (span(x, self.size[0]), span(y, self.size[1]));
+        let at = |x: u32, y: u32| u64::from(self.sums[y as usize * (self.size[0] as usize + 1) + x as usize]);
+        let found = at(right, bottom) + at(left, top) - at(left, bottom) - at(right, top);
+        let whole = (2 * u64::from(width) + 1).pow(2);
+        found == if hit { whole } else { 0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::picture::Seen;
+
+    /// A visibility from rows of `.` for nothing and a digit for a depth.
+    fn seen(rows: &[&str]) -> Visibility {
+        let hit = |c: char| c.to_digit(10).map(|d| Seen { depth: d.into(), index: d, normal: [0.0; 3] });
+        let seen = rows.iter().flat_map(|row| row.chars().map(hit)).collect();
+        Visibility { size: [rows[0].len() as u32, rows.len() as u32], seen }
+    }
+
+    /// The marks as rows.
+    fn rows(map: &HoleMap) -> Vec<String> {
+        let letter = |mark: &Mark| match mark {
+            Mark::Silhouette => '|',
+            Mark::Same => ' ',
+            Mark::Missing => 'm',
+            Mark::Extra => 'e',
+            Mark::Through => 't',
+        };
+        map.marks.chunks_exact(map.size[0] as usize).map(|row| row.iter().map(letter).collect()).collect()
+    }
+
+    #[test]
+    fn faults_count_off_the_silhouette_alone() {
+        let input =
+            seen(&["........", "........", "...11111", "...11111", "...11111", "...11111", "...11111"]);
+        let splats =
+            seen(&["5.......", "........", ".5......", "...11111", "...11.51", "...11111", "..111111"]);
+        let map = compare(&input, &splats, &Rules { inner: 1, behind: 2.0 });
+        let expected = ["e       ", "  ||||||", " e||||||", "  ||   |", "  || mt|", "  ||   |", "  ||||||"];
+        assert_eq!(rows(&map), expected);
+        assert_eq!([Mark::Missing, Mark::Extra, Mark::Through].map(|mark| map.count(mark)), [1, 2, 1]);
+        assert_eq!(map.compared(), expected.concat().chars().filter(|&c| c != '|').count() as u64);
+        assert_eq!(map.faults().collect::<Vec<_>>(), [(0, 0), (1, 2), (5, 4), (6, 4)]);
+    }
+
+    #[test]
+    fn depth_beside_a_step_is_not_through_and_a_wider_band_hides_more() {
+        let input = seen(&["1111111", "1111444", "1111444", "1111444", "1111111"]);
+        let splats = seen(&["1111111", "1111444", "1114444", "1114414", "1111111"]);
+        let near = compare(&input, &splats, &Rules { inner: 1, behind: 2.0 });
+        assert_eq!(near.count(Mark::Through), 0, "the step lies within a pixel");
+        let splats = seen(&["1111111", "1144444", "1114444", "1114444", "1111111"]);
+        let far = compare(&input, &splats, &Rules { inner: 1, behind: 2.0 });
+        assert_eq!(far.faults().collect::<Vec<_>>(), [(2, 1)]);
+        let wide = compare(&input, &splats, &Rules { inner: 2, behind: 2.0 });
+        assert_eq!((wide.count(Mark::Through), wide.compared()), (0, 3));
+    }
+
+    #[test]
+    fn faults_have_their_colours() {
+        let map =
+            HoleMap { size: [2, 2], marks: vec![Mark::Missing, Mark::Extra, Mark::Same, Mark::Silhouette] };
+        let picture = map.picture(&RgbImage::from_pixel(2, 2, Rgb([80, 80, 80])));
+        let colors: Vec<[u8; 3]> = picture.pixels().map(|pixel| pixel.0).collect();
+        assert_eq!(colors, [[225, 0, 0], [0, 60, 255], [187; 3], [187; 3]]);
+    }
+}

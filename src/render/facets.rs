@@ -1,0 +1,96 @@
+//! A mesh before a camera: its triangles, exactly.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::eye::{Eye, Ray};
+use super::input::{Normals, color, given_normal};
+use super::project::{self, Bound};
+use super::smooth;
+use super::tiles::{Hit, Look, Scene};
+use crate::model::mesh::Mesh;
+use crate::tolerance::DEFAULT_EDGE_ANGLE;
+
+/// The normals of each triangle's corners that no camera changes, in model coordinates; empty
+/// where the file's or the faces' serve.
+pub(super) fn corner_normals(mesh: &Mesh, normals: Normals) -> Vec<[Vec3; 3]> {
+    match normals {
+        Normals::Given if !mesh.vertices.normals.is_empty() => Vec::new(),
+        Normals::Given => smooth::corner_normals(mesh, DEFAULT_EDGE_ANGLE),
+        Normals::Crease(degrees) => smooth::corner_normals(mesh, degrees),
+        Normals::Flat => Vec::new(),
+    }
+}
+
+/// A mesh before a camera.
+pub(super) struct Facets<'a> {
+    mesh: &'a Mesh,
+    eye: &'a Eye,
+    /// Vertices in view coordinates.
+    places: Vec<DVec3>,
+    /// Corner normals in model coordinates; empty when the file's or the faces' serve.
+    corners: &'a [[Vec3; 3]],
+    normals: Normals,
+}
+
+impl<'a> Facets<'a> {
+    /// Places a mesh before an eye; `corners` is from [`corner_normals`].
+    pub(super) fn new(mesh: &'a Mesh, eye: &'a Eye, normals: Normals, corners: &'a [[Vec3; 3]]) -> Self {
+        let places = mesh.vertices.positions.iter().map(|p| eye.to_view(p.as_dvec3())).collect();
+        Self { mesh, eye, places, corners, normals }
+    }
+
+    fn corners(&self, item: usize) -> [DVec3; 3] {
+        self.mesh.triangles[item].map(|vertex| self.places[vertex as usize])
+    }
+
+    /// The smooth normals of a triangle's corners, in view coordinates.
+    fn smooth(&self, item: usize) -> Option<[DVec3; 3]> {
+        if let Some(corners) = self.corners.get(item) {
+            return Some(corners.map(|n| self.eye.turn(n.as_dvec3())));
+        }
+        if self.normals == Normals::Flat {
+            return None;
+        }
+        let [a, b, c] = self.mesh.triangles[item].map(|v| given_normal(&self.mesh.vertices, v as usize));
+        Some([a?, b?, c?].map(|n| self.eye.turn(n)))
+    }
+}
+
+impl Scene for Facets<'_> {
+    fn len(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    fn bound(&self, item: usize) -> Option<Bound> {
+        project::triangle_bound(self.corners(item), self.eye)
+    }
+
+    /// Woop, Benthin and Wald 2013: in the plane across the ray an edge's area is the same
+    /// number, but for its sign, for both triangles beside it, so no ray slips between them.
+    fn hit(&self, item: usize, ray: &Ray) -> Option<Hit> {
+        let corners = self.corners(item);
+        let [a, b, c] = corners.map(|p| p.truncate() - ray.at(p.z));
+        let (wa, wb, wc) = (c.perp_dot(b), a.perp_dot(c), b.perp_dot(a));
+        let inside = (wa >= 0.0 && wb >= 0.0 && wc >= 0.0) || (wa <= 0.0 && wb <= 0.0 && wc <= 0.0);
+        let total = wa + wb + wc;
+        if !inside || total == 0.0 {
+            return None;
+        }
+        let at = DVec2::new(wb, wc) / total;
+        let depth =
+            corners[0].z + at.x * (corners[1].z - corners[0].z) + at.y * (corners[2].z - corners[0].z);
+        (depth >= self.eye.near).then_some(Hit { depth, at, ellipse: 0.0 })
+    }
+
+    fn look(&self, item: usize, at: DVec2) -> Look {
+        let weights = [1.0 - at.x - at.y, at.x, at.y];
+        let [a, b, c] = self.corners(item);
+        let flat = (b - a).cross(c - a).normalize_or_zero();
+        let blend =
+            |n: [DVec3; 3]| (weights[0] * n[0] + weights[1] * n[1] + weights[2] * n[2]).try_normalize();
+        let normal = self.smooth(item).and_then(blend).unwrap_or(flat);
+        let colors = self.mesh.triangles[item].map(|vertex| color(&self.mesh.vertices, vertex as usize));
+        let color = (0..3).map(|n| weights[n] as f32 * colors[n]).sum();
+        Look { normal, color }
+    }
+}
