@@ -8,7 +8,6 @@ use super::schema::{Case, Outcome};
 use crate::bake::{Edges, Options, Silent, feature_lines};
 use crate::deliver::deliver;
 use crate::error::{Error, Result};
-use crate::format;
 use crate::ingest::Input;
 use crate::measure::{self, measure};
 use crate::model::asset::Asset;
@@ -56,8 +55,6 @@ fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outco
     let options = Options { edges: subject.edges.clone(), ..setting.options() };
     let delivery = deliver(&subject.input, &options, &mut Silent)?;
     let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
-    let info = format::inspect(&delivery.bytes, &format::Limits::default())?;
-    let file = report::File::new("".as_ref(), &info);
     let lines = feature_lines(&subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
     let measures = measure(&measure::Subject {
         bytes: &delivery.bytes,
@@ -70,8 +67,6 @@ fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outco
         bake_cpu_seconds: run.cpu_seconds,
         stages: run.stages,
         frame_ms: frame_ms(&delivery.asset, frames)?,
-        head_bytes: file.head_bytes,
-        chunks: file.chunks,
         measures,
     };
     let pictures = [draw_asset(&delivery.asset, Show::Shaded)?, draw_asset(&delivery.asset, Show::Splats)?];

@@ -3,8 +3,7 @@
 use std::error::Error as StdError;
 
 use plotters::chart::ChartContext;
-use plotters::coord::ranged1d::WithKeyPoints;
-use plotters::coord::types::RangedCoordf64;
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
 use crate::error::{Error, Result};
@@ -44,8 +43,37 @@ pub(super) enum Mark {
     Cross,
 }
 
-type Axis = WithKeyPoints<RangedCoordf64>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+/// An axis over decades: its values are logarithms to base 10, its labels are numbers.
+struct Decades {
+    low: f64,
+    high: f64,
+}
+
+impl Ranged for Decades {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let share = (value - self.low) / (self.high - self.low);
+        limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        ticks(self.low, self.high)
+    }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Decades {
+    fn format_ext(&self, log: &f64) -> String {
+        number(libm::exp10(*log))
+    }
+}
+
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Decades, Decades>>;
 type Drawn = std::result::Result<(), Box<dyn StdError>>;
 
 /// Half the width of a mark, pixels.
@@ -91,14 +119,12 @@ fn draw(svg: &mut String, labels: [&str; 2], lines: &[Line], guides: &[Guide]) -
         .margin_right(30)
         .x_label_area_size(92)
         .y_label_area_size(128)
-        .build_cartesian_2d(axis(x), axis(y))?;
+        .build_cartesian_2d(Decades { low: x.0, high: x.1 }, Decades { low: y.0, high: y.1 })?;
     let text = ("sans-serif", TEXT).into_font().color(&INK);
     chart
         .configure_mesh()
         .x_desc(labels[0])
         .y_desc(labels[1])
-        .x_label_formatter(&|log| number(libm::exp10(*log)))
-        .y_label_formatter(&|log| number(libm::exp10(*log)))
         .label_style(text.clone())
         .axis_desc_style(text)
         .axis_style(INK.stroke_width(2))
@@ -134,10 +160,10 @@ fn curve(chart: &mut Chart<'_, '_>, line: &Line) -> Drawn {
         chart.draw_series(LineSeries::new(path.iter().copied(), stroke))?;
     }
     for &(x, y, front) in &line.points {
-        let place = EmptyElement::at((x, y));
-        chart.draw_series([place.clone() + Polygon::new(outline(mark), color.filled())])?;
+        let place = || EmptyElement::at((x, y));
+        chart.draw_series([place() + Polygon::new(outline(mark), color.filled())])?;
         if front {
-            chart.draw_series([place + Circle::new((0, 0), RING, BLACK.stroke_width(3))])?;
+            chart.draw_series([place() + Circle::new((0, 0), RING, BLACK.stroke_width(3))])?;
         }
     }
     Ok(())
@@ -181,10 +207,6 @@ fn extent(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let high = values.fold(f64::NEG_INFINITY, f64::max);
     let room = ROOM.max(0.5 * (LEAST_SPAN - (high - low))).max(0.06 * (high - low));
     (low - room, high + room)
-}
-
-fn axis((low, high): (f64, f64)) -> Axis {
-    (low..high).with_key_points(ticks(low, high))
 }
 
 /// Where an axis over decades has its labels: at 1, 2 and 5 of each decade where that leaves

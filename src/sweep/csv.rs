@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 type Column = (&'static str, fn(&Outcome) -> String);
 
 /// The columns of an outcome. Names, units and order are those of `docs/sweep-schema.md`.
-const COLUMNS: [Column; 33] = [
+const COLUMNS: [Column; 34] = [
     ("bake_seconds", |o| o.bake_seconds.to_string()),
     ("bake_cpu_seconds", |o| o.bake_cpu_seconds.to_string()),
     ("frame_ms", |o| o.frame_ms.to_string()),
@@ -35,6 +35,7 @@ const COLUMNS: [Column; 33] = [
     ("edge_max", |o| optional(o.measures.edge.map(|edge| edge.max))),
     ("holes_missing", |o| o.measures.holes.missing.to_string()),
     ("holes_extra", |o| o.measures.holes.extra.to_string()),
+    ("holes_through", |o| o.measures.holes.through.to_string()),
     ("flip_mean", |o| o.measures.image.flip_mean.to_string()),
     ("flip_p99", |o| o.measures.image.flip_p99.to_string()),
     ("psnr", |o| o.measures.image.psnr.to_string()),

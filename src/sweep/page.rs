@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use plotters::style::RGBColor;
 
-use super::axis::{BUDGET, COSTS, Curve, ERRORS, EXPECTED, SPLATS, curves, front_name};
+use super::axis::{Axis, BUDGET, COSTS, Curve, ERRORS, EXPECTED, SPLATS, curves, front_name};
 use super::bars::{self, Bar};
 use super::chart::{self, Guide, Line, Look, Mark, log_log};
 use super::pictures::{Album, Shown};
@@ -103,8 +103,6 @@ fn section(html: &mut String, index: usize, model: &Model, shown: &Shown) -> Res
     Ok(())
 }
 
-use super::axis::Axis;
-
 /// One chart of error against cost, with the exponents of its curves below it.
 fn figure(html: &mut String, model: &Model, curves: &[Curve<'_>], error: &Axis, cost: &Axis) -> Result<()> {
     let front = front_name(error, cost);
@@ -155,8 +153,9 @@ fn scaling(html: &mut String, model: &Model, curves: &[Curve<'_>]) -> Result<()>
 fn breakdown(html: &mut String, model: &Model) -> Result<()> {
     let stages = |o: &Outcome| o.stages.iter().map(|s| (s.name.clone(), s.wall_seconds)).collect();
     let chunks = |o: &Outcome| {
-        let head = std::iter::once(("head".to_owned(), o.head_bytes as f64 / 1e3));
-        head.chain(o.chunks.iter().map(|c| (c.name.clone(), c.coded_bytes as f64 / 1e3))).collect()
+        let head = std::iter::once(("head".to_owned(), o.measures.cost.head_bytes as f64 / 1e3));
+        head.chain(o.measures.cost.chunks.iter().map(|c| (c.name.clone(), c.coded_bytes as f64 / 1e3)))
+            .collect()
     };
     html.push_str("<h3>Where time and bytes go</h3>\n<div class=\"bars\">\n");
     stack(html, model, "bake time by stage, s", &stages)?;

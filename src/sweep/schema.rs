@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::bake::StageTime;
 use crate::measure::Measures;
-use crate::report::Chunk;
 
 /// Name and version of the schema. The number grows when a key changes its meaning or goes;
 /// new keys may come without.
@@ -92,11 +91,7 @@ pub struct Outcome {
     pub stages: Vec<StageTime>,
     /// Milliseconds to draw one frame, the median.
     pub frame_ms: f64,
-    /// Bytes of header and table of chunks.
-    pub head_bytes: u64,
-    /// The chunks in the order of the file.
-    pub chunks: Vec<Chunk>,
-    /// Every error and cost, as `qsplat measure` gives them.
+    /// Every error and cost (`docs/measure-schema.md`), bytes by chunk among them.
     pub measures: Measures,
 }
 

@@ -23,8 +23,9 @@ const COLUMNS: [Column; 14] = [
         o.measures.edge.map_or_else(|| "–".into(), |edge| format!("{:.2}", budgets(o, edge.max)))
     }),
     ("normal rms", "degrees", |o| format!("{:.2}", o.measures.normal.rms_deg)),
-    ("holes", "missing + extra px", |o| {
-        format!("{} + {}", grouped(o.measures.holes.missing), grouped(o.measures.holes.extra))
+    ("holes", "missing, extra, through", |o| {
+        let holes = &o.measures.holes;
+        [holes.missing, holes.extra, holes.through].map(grouped).join(", ")
     }),
     ("FLIP", "mean", |o| format!("{:.4}", o.measures.image.flip_mean)),
     ("frame", "ms, CPU", |o| significant(o.frame_ms)),
