@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::Args;
 use qsplat::bake::MaxError;
-use qsplat::error::Result;
+use qsplat::error::{Error, Result};
 use qsplat::sweep::{self, Case, Event, Lines, Plan};
 
 use super::progress::Style;
@@ -95,8 +95,14 @@ impl Arguments {
                 }
             };
         };
-        let swept = sweep::run(&self.inputs, &plan, &mut watch)?;
-        let page = swept.write(&self.output)?;
+        // What cannot be written should be known before the work, and what is done be kept.
+        std::fs::create_dir_all(&self.output).map_err(Error::io(&self.output))?;
+        let mut written = Ok(self.output.clone());
+        let swept = sweep::run(&self.inputs, &plan, &mut |event| match event {
+            Event::Finished(so_far) => written = so_far.write(&self.output),
+            event => watch(event),
+        })?;
+        let page = written?;
         let failures = swept.sweep.failures();
         let cases: usize = swept.sweep.models.iter().map(|model| model.cases.len()).sum();
         let text = format!("{}: {cases} bakes, {failures} failed\n", page.display());
@@ -107,6 +113,7 @@ impl Arguments {
 fn plain(event: &Event<'_>) -> String {
     match event {
         Event::Reading(path) => format!("{}", path.display()),
+        Event::Finished(swept) => format!("{} inputs done", swept.sweep.models.len()),
         Event::Began(model, what) => format!("{model}: {what} ..."),
         Event::Ended { model, case, done, total } => {
             format!(
@@ -142,6 +149,9 @@ fn json(event: &Event<'_>, seconds: f64) -> serde_json::Value {
     match event {
         Event::Reading(path) => {
             serde_json::json!({ "event": "input", "path": path.display().to_string(), "seconds": seconds })
+        }
+        Event::Finished(swept) => {
+            serde_json::json!({ "event": "finished", "inputs": swept.sweep.models.len(), "seconds": seconds })
         }
         Event::Began(model, what) => {
             serde_json::json!({ "event": "case", "model": model, "case": what, "seconds": seconds })

@@ -42,9 +42,11 @@ pub enum Event<'a> {
         case: &'a Case,
         /// Cases of this input that ended so far.
         done: usize,
-        /// Cases of this input.
+        /// Cases of this input, as far as is known.
         total: usize,
     },
+    /// All cases of an input ended: everything so far, to be written before the next begins.
+    Finished(&'a Swept),
 }
 
 /// A sweep and the pictures of its cases.
@@ -64,13 +66,6 @@ pub struct Swept {
 /// [`Error::Usage`] for a plan that cannot be carried out.
 pub fn run(inputs: &[PathBuf], plan: &Plan, watch: &mut dyn FnMut(&Event<'_>)) -> Result<Swept> {
     plan.check(inputs.len())?;
-    let (mut all, mut album) = (Vec::new(), Album::default());
-    for path in inputs {
-        watch(&Event::Reading(path));
-        let (model, pictures) = models::sweep(path, plan, watch);
-        all.push(model);
-        album.models.push(pictures);
-    }
     let run = schema::Run {
         threads: rayon::current_num_threads() as u64,
         jobs: plan.jobs as u64,
@@ -79,7 +74,16 @@ pub fn run(inputs: &[PathBuf], plan: &Plan, watch: &mut dyn FnMut(&Event<'_>)) -
         frame_device: "CPU reference".into(),
     };
     let generator = format!("qsplat {}", env!("CARGO_PKG_VERSION"));
-    Ok(Swept { sweep: Sweep { schema: schema::SCHEMA.into(), generator, run, models: all }, album })
+    let sweep = Sweep { schema: schema::SCHEMA.into(), generator, run, models: Vec::new() };
+    let mut swept = Swept { sweep, album: Album::default() };
+    for path in inputs {
+        watch(&Event::Reading(path));
+        let (model, pictures) = models::sweep(path, plan, watch);
+        swept.sweep.models.push(model);
+        swept.album.models.push(pictures);
+        watch(&Event::Finished(&swept));
+    }
+    Ok(swept)
 }
 
 impl Sweep {
