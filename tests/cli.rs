@@ -1,6 +1,6 @@
 //! The built binary, end to end: results, exit codes, and what goes to which stream.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, clippy::float_cmp)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,6 +8,7 @@ use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use qsplat::format::{self, Limits};
+use qsplat::measure::Measures;
 use qsplat::report::Report;
 use tempfile::TempDir;
 
@@ -261,6 +262,90 @@ fn verify_passes_and_finds_one_changed_coefficient() {
     assert_eq!(code(&verify(&changed, &["--report", &text(&page)])), 1);
     let html = fs::read_to_string(page.join("index.html")).unwrap();
     assert!(html.contains("FAILED") && html.contains("iso-heat.png") && page.join("iso-heat.png").exists());
+}
+
+/// Runs `measure` on the cylinder of [`baked`].
+fn measured(more: &[&str]) -> Output {
+    let (_, file) = baked();
+    let (input, edges) = (fixture("capped-cylinder.ply"), fixture("capped-cylinder.edges.obj"));
+    qsplat(&[&["measure", file, "--against", &input, "--edges", &edges], more].concat())
+}
+
+#[test]
+fn measure_says_everything_and_passes_its_check() {
+    let (directory, file) = baked();
+    let page = directory.path().join("measured");
+    let output = measured(&["--json", "--check", "--report", &text(&page)]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let value: serde_json::Value = serde_json::from_str(&out(&output)).unwrap();
+    for (part, keys) in [
+        ("fit", "rms p99 max"),
+        ("forward", "rms max"),
+        ("backward", "rms p99 max"),
+        ("normal", "rms_deg p99_deg"),
+        ("edge", "rms max"),
+        ("holes", "missing extra views pixels"),
+        ("image", "flip_mean flip_p99 psnr ssim normal_flip_mean"),
+        ("cost", "bytes splats decode_seconds cpu_frame_ms fragments overlap"),
+    ] {
+        for key in keys.split(' ') {
+            assert!(value[part][key].is_number(), "{part}.{key} in {value}");
+        }
+    }
+    let measures: Measures = serde_json::from_value(value).unwrap();
+    assert_eq!((measures.schema.as_str(), measures.kind.as_str()), ("qsplat-measure/1", "mesh"));
+    let info: Report = serde_json::from_str(&ok(&["info", file, "--json"])).unwrap();
+    assert_eq!(
+        (measures.fit.rms, measures.fit.p99, measures.fit.max),
+        (info.error.fit.rms, info.error.fit.p99, info.error.fit.max),
+        "the error measured anew is the error stored"
+    );
+    assert_eq!(measures.cost.bytes, info.file.bytes);
+    let coded: u64 = measures.cost.chunks.iter().map(|chunk| chunk.coded_bytes).sum();
+    assert_eq!(measures.cost.head_bytes + coded, measures.cost.bytes, "every byte is accounted for");
+    assert_eq!((measures.holes.missing, measures.holes.extra, measures.views.len()), (0, 0, 26));
+    assert!(measures.image.flip_mean < 0.03 && measures.image.ssim > 0.9, "{:?}", measures.image);
+    let stored = fs::read_to_string(page.join("measures.json")).unwrap();
+    assert_eq!(stored, out(&output));
+    let html = fs::read_to_string(page.join("index.html")).unwrap();
+    assert!(html.contains("passed") && html.contains("right-top-front"), "{html}");
+}
+
+#[test]
+fn measure_finds_a_splat_that_is_gone() {
+    let (directory, file) = baked();
+    let mut asset = format::read_file(file.as_ref(), &Limits::default()).unwrap();
+    // The largest: what it covers, its neighbours leave to it.
+    let area = |n: &usize| asset.splats[*n].radii.element_product();
+    let largest = (0..asset.splats.len()).max_by(|a, b| area(a).total_cmp(&area(b))).unwrap();
+    asset.splats.remove(largest);
+    let holed = text(&directory.path().join("holed.qsplat"));
+    format::write_file(holed.as_ref(), &format::encode(&asset).unwrap()).unwrap();
+    let (input, page) = (fixture("capped-cylinder.ply"), directory.path().join("holed"));
+    let measure = |more: &[&str]| qsplat(&[&["measure", &holed, "--against", &input], more].concat());
+    let told = measure(&[]);
+    assert_eq!(code(&told), 0, "only --check judges: {}", err(&told));
+    assert!(out(&told).contains("points not covered") && out(&told).contains("holes"), "{}", out(&told));
+    let failed = measure(&["--check", "--report", &text(&page)]);
+    assert_eq!(code(&failed), 1, "{}", err(&failed));
+    assert!(out(&failed).contains("FAILED") && err(&failed).contains("index.html"), "{}", out(&failed));
+    let html = fs::read_to_string(page.join("index.html")).unwrap();
+    assert!(html.contains("FAILED") && html.contains("-holes.png") && html.contains("splats seen within"));
+    let pictures = fs::read_dir(&page)
+        .unwrap()
+        .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().ends_with("-holes.png"));
+    assert!(pictures.count() > 1);
+}
+
+#[test]
+fn measure_refuses_what_does_not_belong_together() {
+    let (_, file) = baked();
+    let message = refused(&["measure", file, "--against", &fixture("sphere.ply")]);
+    assert!(message.contains("belong together") && message.contains("baked from"), "{message}");
+    assert!(refused(&["measure", file]).contains("--against"));
+    let input = fixture("capped-cylinder.ply");
+    assert!(refused(&["measure", &input, "--against", &input]).contains("capped-cylinder.ply"));
+    refused(&["measure", file, "--against", &input, "--edges", "/no/such/lines.obj"]);
 }
 
 #[test]

@@ -77,3 +77,59 @@ fn moved(cloud: &Cloud, frame: Frame) -> Cloud {
     let point = |point: &glam::Vec3| frame.to_model(cloud.frame.to_input(point.as_dvec3())).as_vec3();
     Cloud { frame, positions: cloud.positions.iter().map(point).collect(), ..cloud.clone() }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::float_cmp)]
+mod tests {
+    use super::*;
+    use crate::model::asset::Accuracy;
+    use glam::Vec3;
+
+    /// Two points whose box is `[-8, 8] x [-4, 4] x [0, 0]` around `origin`, in 2^`exponent`.
+    fn cloud(origin: DVec3, exponent: i32) -> Cloud {
+        let frame = Frame { origin, exponent };
+        let scale = frame.scale() as f32;
+        let corner = Vec3::new(8.0, 4.0, 0.0) / scale;
+        Cloud { frame, positions: vec![corner, -corner], ..Cloud::default() }
+    }
+
+    fn asset() -> Asset {
+        let frame = Frame { origin: DVec3::ONE, exponent: 3 };
+        let diagonal = libm::hypot(2.0, 1.0);
+        Asset {
+            frame,
+            diagonal,
+            max_error: 1e-3,
+            fit: Accuracy::default(),
+            has_colors: false,
+            splats: vec![],
+        }
+    }
+
+    #[test]
+    fn the_same_frame_is_not_copied_and_another_comes_to_the_same_places() {
+        let same = cloud(DVec3::ONE, 3);
+        assert!(matches!(align(Model::Cloud(&same), &asset()).unwrap(), Aligned::Cloud(Cow::Borrowed(_))));
+        let other = cloud(DVec3::ONE + DVec3::X * 1e-5, 4);
+        let aligned = align(Model::Cloud(&other), &asset()).unwrap();
+        let model = aligned.model();
+        let found = model.cloud();
+        assert_eq!((found.frame, found.positions.len()), (asset().frame, 2));
+        for (a, b) in found.positions.iter().zip(&same.positions) {
+            assert!((a.distance(*b) - 1.25e-6).abs() < 2e-7, "{a} is not {b} and the origins' difference");
+        }
+        let line = [vec![DVec3::new(0.25, 0.5, 0.0)]];
+        let moved = lines(&line, &other.frame, &asset().frame);
+        assert!(moved[0][0].distance(DVec3::new(0.5 + 1.25e-6, 1.0, 0.0)) < 1e-12);
+    }
+
+    #[test]
+    fn another_model_is_refused_with_both_boxes() {
+        let mut bigger = cloud(DVec3::ONE, 3);
+        bigger.positions[0].x *= 1.01;
+        for other in [cloud(DVec3::ONE + DVec3::Y * 1e-3, 3), bigger, Cloud::default()] {
+            let message = align(Model::Cloud(&other), &asset()).err().unwrap().to_string();
+            assert!(message.contains("17.88") && message.contains("baked from"), "{message}");
+        }
+    }
+}

@@ -1,15 +1,29 @@
 //! Numbers that say how good a result is: every error and cost of a file against its input.
 
 pub mod align;
+mod area;
+mod border;
+mod box_tree;
+mod cloud_fit;
 pub mod cost;
 pub mod edge;
+mod feet;
 pub mod fit;
 pub mod holes;
 pub mod image;
 pub mod measures;
+mod patch;
+mod patches;
+#[cfg(test)]
+mod planted;
 mod point_grid;
+mod roots;
+mod samples;
 pub mod seen;
+mod segment;
+mod spread;
 pub mod surface;
+mod triangles;
 pub mod views;
 
 use glam::DVec3;

@@ -128,3 +128,6 @@ impl Scores {
 fn decibels(mean_square: f64) -> f64 {
     difference::decibels(mean_square).min(MOST_DECIBELS)
 }
+
+#[cfg(test)]
+mod tests;

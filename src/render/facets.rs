@@ -1,25 +1,13 @@
 //! A mesh before a camera: its triangles, exactly.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 
 use super::eye::{Eye, Ray};
-use super::input::{Normals, color, given_normal};
+use super::input::color;
+use super::mesh_normals::MeshNormals;
 use super::project::{self, Bound};
-use super::smooth;
 use super::tiles::{Hit, Look, Scene};
 use crate::model::mesh::Mesh;
-use crate::tolerance::DEFAULT_EDGE_ANGLE;
-
-/// The normals of each triangle's corners that no camera changes, in model coordinates; empty
-/// where the file's or the faces' serve.
-pub(super) fn corner_normals(mesh: &Mesh, normals: Normals) -> Vec<[Vec3; 3]> {
-    match normals {
-        Normals::Given if !mesh.vertices.normals.is_empty() => Vec::new(),
-        Normals::Given => smooth::corner_normals(mesh, DEFAULT_EDGE_ANGLE),
-        Normals::Crease(degrees) => smooth::corner_normals(mesh, degrees),
-        Normals::Flat => Vec::new(),
-    }
-}
 
 /// A mesh before a camera.
 pub(super) struct Facets<'a> {
@@ -27,16 +15,14 @@ pub(super) struct Facets<'a> {
     eye: &'a Eye,
     /// Vertices in view coordinates.
     places: Vec<DVec3>,
-    /// Corner normals in model coordinates; empty when the file's or the faces' serve.
-    corners: &'a [[Vec3; 3]],
-    normals: Normals,
+    normals: &'a MeshNormals<'a>,
 }
 
 impl<'a> Facets<'a> {
-    /// Places a mesh before an eye; `corners` is from [`corner_normals`].
-    pub(super) fn new(mesh: &'a Mesh, eye: &'a Eye, normals: Normals, corners: &'a [[Vec3; 3]]) -> Self {
+    /// Places a mesh before an eye.
+    pub(super) fn new(mesh: &'a Mesh, eye: &'a Eye, normals: &'a MeshNormals<'a>) -> Self {
         let places = mesh.vertices.positions.iter().map(|p| eye.to_view(p.as_dvec3())).collect();
-        Self { mesh, eye, places, corners, normals }
+        Self { mesh, eye, places, normals }
     }
 
     fn corners(&self, item: usize) -> [DVec3; 3] {
@@ -45,14 +31,7 @@ impl<'a> Facets<'a> {
 
     /// The smooth normals of a triangle's corners, in view coordinates.
     fn smooth(&self, item: usize) -> Option<[DVec3; 3]> {
-        if let Some(corners) = self.corners.get(item) {
-            return Some(corners.map(|n| self.eye.turn(n.as_dvec3())));
-        }
-        if self.normals == Normals::Flat {
-            return None;
-        }
-        let [a, b, c] = self.mesh.triangles[item].map(|v| given_normal(&self.mesh.vertices, v as usize));
-        Some([a?, b?, c?].map(|n| self.eye.turn(n)))
+        Some(self.normals.corners(item)?.map(|normal| self.eye.turn(normal)))
     }
 }
 

@@ -6,8 +6,9 @@ use super::camera::Camera;
 use super::constants::{self, MATTE};
 use super::cpu;
 use super::eye::{Eye, Ray};
-use super::facets::{self, Facets};
+use super::facets::Facets;
 use super::intersect::{self, LocalRay};
+use super::mesh_normals::MeshNormals;
 use super::picture::{Picture, Survey, Visibility};
 use super::project::{self, Bound, Prism};
 use super::settings::Settings;
@@ -39,7 +40,7 @@ pub struct Style {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normals {
     /// The file's where a triangle has three sound ones, else as [`Normals::Crease`] at
-    /// [`DEFAULT_EDGE_ANGLE`].
+    /// [`DEFAULT_EDGE_ANGLE`](crate::tolerance::DEFAULT_EDGE_ANGLE).
     Given,
     /// The mean over the faces around a corner that turn from this one by at most so many
     /// degrees, weighted by their angle there.
@@ -91,16 +92,16 @@ pub fn visibility(model: Model<'_>, camera: &Camera, size: [u32; 2], style: &Sty
 }
 
 /// A model with all that does not change from camera to camera.
-#[derive(Debug)]
 pub struct Prepared<'a> {
-    model: Model<'a>,
-    normals: Normals,
-    /// See [`facets::corner_normals`].
-    corners: Vec<[Vec3; 3]>,
-    /// Of a cloud's discs, model units; 0 for a mesh.
-    disc: f64,
+    kind: Kind<'a>,
     /// Half the diagonal, model units.
     radius: f64,
+}
+
+enum Kind<'a> {
+    Mesh(&'a Mesh, MeshNormals<'a>),
+    /// With the radius of its discs, model units.
+    Cloud(&'a Cloud, f64),
 }
 
 impl<'a> Prepared<'a> {
@@ -108,17 +109,20 @@ impl<'a> Prepared<'a> {
     #[must_use]
     pub fn new(model: Model<'a>, style: &Style) -> Self {
         let diagonal = model.diagonal();
-        let (corners, disc) = match model {
-            Model::Mesh(mesh) => (facets::corner_normals(mesh, style.normals), 0.0),
-            Model::Cloud(cloud) => (Vec::new(), disc(cloud, style, diagonal)),
+        let kind = match model {
+            Model::Mesh(mesh) => Kind::Mesh(mesh, MeshNormals::new(mesh, style.normals)),
+            Model::Cloud(cloud) => Kind::Cloud(cloud, disc(cloud, style, diagonal)),
         };
-        Self { model, normals: style.normals, corners, disc, radius: 0.5 * diagonal }
+        Self { kind, radius: 0.5 * diagonal }
     }
 
     /// Radius of the discs that a cloud is drawn as, model units; 0 for a mesh.
     #[must_use]
     pub fn disc(&self) -> f64 {
-        self.disc
+        match self.kind {
+            Kind::Mesh(..) => 0.0,
+            Kind::Cloud(_, radius) => radius,
+        }
     }
 
     /// As [`render`].
@@ -127,12 +131,13 @@ impl<'a> Prepared<'a> {
     /// As [`cpu::render`].
     pub fn render(&self, camera: &Camera, settings: &Settings) -> Result<Picture> {
         let eye = self.eye(camera, settings)?;
-        match self.model {
-            Model::Mesh(mesh) => {
-                cpu::picture(&self.facets(mesh, &eye), &eye, self.mix(), settings, self.radius)
+        let (mix, radius) = (self.mix(), self.radius);
+        match &self.kind {
+            Kind::Mesh(mesh, normals) => {
+                cpu::picture(&Facets::new(mesh, &eye, normals), &eye, mix, settings, radius)
             }
-            Model::Cloud(cloud) => {
-                cpu::picture(&self.discs(cloud, &eye), &eye, self.mix(), settings, self.radius)
+            Kind::Cloud(cloud, disc) => {
+                cpu::picture(&Discs { cloud, eye: &eye, radius: *disc }, &eye, mix, settings, radius)
             }
         }
     }
@@ -143,9 +148,9 @@ impl<'a> Prepared<'a> {
     /// As [`cpu::render`].
     pub fn visibility(&self, camera: &Camera, size: [u32; 2]) -> Result<Visibility> {
         let eye = self.eye(camera, &Settings::plain(size))?;
-        Ok(match self.model {
-            Model::Mesh(mesh) => cpu::nearest(&self.facets(mesh, &eye), &eye),
-            Model::Cloud(cloud) => cpu::nearest(&self.discs(cloud, &eye), &eye),
+        Ok(match &self.kind {
+            Kind::Mesh(mesh, normals) => cpu::nearest(&Facets::new(mesh, &eye, normals), &eye),
+            Kind::Cloud(cloud, disc) => cpu::nearest(&Discs { cloud, eye: &eye, radius: *disc }, &eye),
         })
     }
 
@@ -155,31 +160,30 @@ impl<'a> Prepared<'a> {
     /// As [`cpu::render`].
     pub fn survey(&self, camera: &Camera, size: [u32; 2]) -> Result<Survey> {
         let eye = self.eye(camera, &Settings::plain(size))?;
-        match self.model {
-            Model::Mesh(mesh) => cpu::survey_of(&self.facets(mesh, &eye), &eye, self.mix(), self.radius),
-            Model::Cloud(cloud) => cpu::survey_of(&self.discs(cloud, &eye), &eye, self.mix(), self.radius),
+        let (mix, radius) = (self.mix(), self.radius);
+        match &self.kind {
+            Kind::Mesh(mesh, normals) => cpu::survey_of(&Facets::new(mesh, &eye, normals), &eye, mix, radius),
+            Kind::Cloud(cloud, disc) => {
+                cpu::survey_of(&Discs { cloud, eye: &eye, radius: *disc }, &eye, mix, radius)
+            }
         }
     }
 
     fn eye(&self, camera: &Camera, settings: &Settings) -> Result<Eye> {
-        Eye::new(camera, &self.model.cloud().frame, settings.samples()?)
+        let frame = match self.kind {
+            Kind::Mesh(mesh, _) => &mesh.vertices.frame,
+            Kind::Cloud(cloud, _) => &cloud.frame,
+        };
+        Eye::new(camera, frame, settings.samples()?)
     }
 
     /// Triangles are drawn as they are. Discs of one surface overlap by less than their radius
     /// along the normal.
     fn mix(&self) -> Mix {
-        match self.model {
-            Model::Mesh(_) => Mix::Nearest,
-            Model::Cloud(_) => Mix::Band { band: self.disc, agree: constants::agree_cosine() },
+        match self.kind {
+            Kind::Mesh(..) => Mix::Nearest,
+            Kind::Cloud(_, radius) => Mix::Band { band: radius, agree: constants::agree_cosine() },
         }
-    }
-
-    fn facets<'b>(&'b self, mesh: &'b Mesh, eye: &'b Eye) -> Facets<'b> {
-        Facets::new(mesh, eye, self.normals, &self.corners)
-    }
-
-    fn discs<'b>(&self, cloud: &'b Cloud, eye: &'b Eye) -> Discs<'b> {
-        Discs { cloud, eye, radius: self.disc }
     }
 }
 

@@ -22,6 +22,7 @@ mod facets;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod input;
+pub mod mesh_normals;
 pub mod picture;
 pub mod settings;
 

@@ -34,7 +34,7 @@ const RIM: f64 = 2.0;
 const ASTRAY: [(&str, f64, f64); 1] = [("blob", 3e-4, 2.4)];
 
 /// Pixels that may be seen through: on the torus one was, of 1.6 million. To be 0 everywhere.
-const SEEN_THROUGH: [(&str, usize); 1] = [("torus", 2)];
+const SEEN_THROUGH: [(&str, u64); 1] = [("torus", 2)];
 
 /// Vertices are within this of their formulas (fixtures/README.md).
 const VERTEX: f64 = 2.1e-7;
