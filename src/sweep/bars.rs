@@ -22,9 +22,9 @@ const NAMES: u32 = 330;
 /// Height of text, pixels. The backend divides by 1.24.
 const TEXT: u32 = 32;
 
-/// Colours of the parts, told apart by people with any colour vision (Okabe and Ito 2008, with
-/// two greys); more parts than these begin again.
-pub(super) const PALETTE: [RGBColor; 9] = [
+/// Colours of the parts: first those of Okabe and Ito (2008), told apart with any colour vision,
+/// then darker and lighter ones; as many as a file has kinds of chunks. More begin again.
+pub(super) const PALETTE: [RGBColor; 16] = [
     RGBColor(0, 114, 178),
     RGBColor(230, 159, 0),
     RGBColor(0, 158, 115),
@@ -34,6 +34,13 @@ pub(super) const PALETTE: [RGBColor; 9] = [
     RGBColor(240, 228, 66),
     RGBColor(90, 90, 90),
     RGBColor(180, 180, 180),
+    RGBColor(0, 45, 75),
+    RGBColor(250, 190, 170),
+    RGBColor(120, 190, 60),
+    RGBColor(110, 60, 140),
+    RGBColor(150, 225, 215),
+    RGBColor(110, 70, 30),
+    RGBColor(230, 60, 90),
 ];
 
 /// One bar.

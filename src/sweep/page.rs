@@ -140,7 +140,7 @@ fn scaling(html: &mut String, model: &Model, curves: &[Curve<'_>]) -> Result<()>
     let Some(svg) = log_log([BUDGET.label, SPLATS.label], &lines, &guides)? else { return Ok(()) };
     let _ = writeln!(
         html,
-        "<h3>Growth as the budget falls</h3>\n<div class=\"bars\">\n<figure>{svg}<figcaption>Dotted: the \
+        "<h3>Growth as the budget falls</h3>\n<div class=\"growth\">\n<figure>{svg}<figcaption>Dotted: the \
          expected exponents −1 (planes, and triangles), −⅔ (quadrics on a smooth surface) and −½ (quadrics on \
          a sphere), from steep to shallow.</figcaption></figure>\n<div>\n<p class=\"note\">Fitted exponents \
          <i>s</i> of cost ~ budget<sup><i>s</i></sup>:</p>\n{}</div>\n</div>",
