@@ -209,8 +209,8 @@ fn extent(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (low - room, high + room)
 }
 
-/// Where an axis over decades has its labels: at 1, 2 and 5 of each decade where that leaves
-/// few enough of them, else at 1 and 3, else at whole decades.
+/// Where an axis over decades has its labels: at the most of some round numbers in each decade
+/// that leave few enough labels.
 fn ticks(low: f64, high: f64) -> Vec<f64> {
     const MOST: usize = 7;
     let at = |mantissas: &[f64]| -> Vec<f64> {
@@ -244,7 +244,7 @@ mod tests {
         };
         assert_eq!(values(0.9, 6.0), ["1", "1.5", "2", "3", "5"]);
         assert_eq!(values(0.02, 1.1), ["0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
-        assert_eq!(values(0.0009, 0.011), ["0.001", "0.002", "0.005", "0.01"]);
+        assert_eq!(values(0.0009, 0.011), ["0.001", "0.0015", "0.002", "0.003", "0.005", "0.007", "0.01"]);
         assert_eq!(values(9.0, 20_000.0), ["10", "30", "100", "300", "1000", "3000", "10000"]);
         for span in 1..60 {
             let high = libm::pow(10.0, f64::from(span) * 0.1);

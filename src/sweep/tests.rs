@@ -45,10 +45,10 @@ fn outcome(budget: f64, splats: f64) -> Outcome {
         },
         views: Vec::new(),
         cost: Cost {
-            bytes: bytes as u64,
+            bytes: bytes.round() as u64,
             head_bytes: 100,
             chunks: vec![chunk("POSN", 0.6), chunk("NORM", 0.3)],
-            splats: splats as u64,
+            splats: splats.round() as u64,
             clipped: 5,
             ..Cost::default()
         },
@@ -232,7 +232,7 @@ fn the_csv_has_a_row_a_case_and_quotes_what_must_be() {
     let column = |name: &str| head.iter().position(|head| head == name).unwrap();
     let rows: Vec<::csv::StringRecord> = table.records().map(|row| row.unwrap()).collect();
     assert_eq!(rows.len(), 13, "twelve cases and an input that was lost");
-    assert_eq!(&rows[1][column("bytes")], "20000");
+    assert_eq!(&rows[1][column("bytes")], "24000");
     assert_eq!(&rows[1][column("budget")], "0.001");
     assert_eq!(&rows[11][column("failure")], "it broke at <place> & stopped");
     assert_eq!((&rows[11][column("bytes")], &rows[12][column("model")]), ("", "lost"));
