@@ -14,7 +14,7 @@ mod views;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
-use qsplat::bake::{Colors, Edges, MaxError, Normals, Options, Silent};
+use qsplat::bake::{Edges, MaxError, Options, Silent};
 use qsplat::deliver::deliver;
 use qsplat::ingest::{self, Input, Limits};
 use qsplat::model::asset::Asset;
