@@ -349,6 +349,53 @@ fn measure_refuses_what_does_not_belong_together() {
 }
 
 #[test]
+fn a_sweep_keeps_its_numbers_and_its_failures() {
+    let directory = tempfile::tempdir().unwrap();
+    let (sphere, into) = (fixture("sphere.ply"), text(&directory.path().join("made/here")));
+    let sweep = |inputs: &[&str], more: &[&str]| {
+        let fixed = ["report", "-o", &into, "--efforts", "1", "--frames", "1", "--progress", "json"];
+        qsplat(&[&fixed, inputs, more].concat())
+    };
+    let output = sweep(&[&sphere, "no-such.ply"], &["--max-errors", "2%,1%", "--jobs", "2"]);
+    assert_eq!(code(&output), 1, "a failed input is a failed check\n{}", err(&output));
+    assert!(out(&output).contains("4 bakes, 1 failed"), "{}", out(&output));
+    let (jobs, lines) = err(&output)
+        .lines()
+        .map(str::to_owned)
+        .partition::<Vec<_>, _>(|line| line.contains("more than one job"));
+    assert_eq!(jobs.len(), 1);
+    let ended = lines.iter().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    assert_eq!(ended.filter(|line| line["event"] == "ended").count(), 4);
+    let read = |name: &str| fs::read_to_string(Path::new(&into).join(name)).unwrap();
+    let report: qsplat::sweep::Sweep = serde_json::from_str(&read("report.json")).unwrap();
+    let (sound, lost) = (&report.models[0], &report.models[1]);
+    assert!(lost.failure.as_ref().unwrap().contains("no-such.ply") && lost.cases.is_empty());
+    let settings: Vec<(&str, &str)> =
+        sound.cases.iter().map(|c| (c.variant.as_str(), c.max_error.as_str())).collect();
+    assert_eq!(settings, [("all", "2%"), ("all", "1%"), ("flat", "2%"), ("flat", "1%")], "nothing is cut");
+    let costs: Vec<_> =
+        sound.cases.iter().map(|c| c.outcome.as_ref().unwrap().measures.cost.clone()).collect();
+    assert!(costs[0].splats < costs[1].splats && costs[1].splats < costs[3].splats, "{costs:?}");
+    assert_eq!((costs[3].quadric, costs[3].flat), (0, costs[3].splats));
+    for case in &sound.cases {
+        let measures = &case.outcome.as_ref().unwrap().measures;
+        assert!(measures.fit.max <= measures.budget && measures.image.flip_mean > 0.0, "{measures:?}");
+    }
+    assert_eq!(read("report.csv").lines().count(), 6, "a head, four cases, a lost input");
+    let page = read("report.html");
+    assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("http"), "nothing is fetched");
+    for (more, word) in [
+        (["--max-errors", "1%,thin"], "0.1%"),
+        (["--max-errors", "1%,1%"], "twice"),
+        (["--jobs", "0"], "jobs"),
+        (["--frames", "0"], "frames"),
+    ] {
+        let output = sweep(&[&sphere], &more);
+        assert!(code(&output) == 2 && err(&output).contains(word), "{more:?}: {}", err(&output));
+    }
+}
+
+#[test]
 fn the_gpu_passes_the_goldens_of_the_reference() {
     let required = std::env::var_os("QSPLAT_REQUIRE_GPU").is_some();
     let devices = ok(&["render", "--list-devices"]);

@@ -10,6 +10,7 @@ mod info;
 mod measure;
 mod progress;
 mod render;
+mod report;
 mod source;
 mod verify;
 
@@ -43,6 +44,7 @@ enum Command {
     Verify(verify::Arguments),
     Measure(measure::Arguments),
     Export(export::Arguments),
+    Report(report::Arguments),
 }
 
 /// What a subcommand comes to.
@@ -91,6 +93,7 @@ impl Arguments {
             Command::Verify(arguments) => arguments.run(&mut notes),
             Command::Measure(arguments) => arguments.run(&mut notes),
             Command::Export(arguments) => arguments.run(),
+            Command::Report(arguments) => arguments.run(&mut notes),
         }
     }
 }

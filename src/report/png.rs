@@ -17,9 +17,20 @@ where
     P: PixelWithColorType,
     [P::Subpixel]: EncodableLayout,
 {
+    format::write_file(path, &encode(picture)?)
+}
+
+/// The bytes of a picture as a PNG.
+///
+/// # Errors
+/// [`Error::Internal`] if it cannot be coded, which no picture in memory causes.
+pub fn encode<P>(picture: &ImageBuffer<P, Vec<P::Subpixel>>) -> Result<Vec<u8>>
+where
+    P: PixelWithColorType,
+    [P::Subpixel]: EncodableLayout,
+{
     let mut bytes = Cursor::new(Vec::new());
-    picture
-        .write_to(&mut bytes, ImageFormat::Png)
-        .map_err(|error| Error::Internal(format!("{}: {error}", path.display())))?;
-    format::write_file(path, bytes.get_ref())
+    let coded = picture.write_to(&mut bytes, ImageFormat::Png);
+    coded.map_err(|error| Error::Internal(format!("PNG: {error}")))?;
+    Ok(bytes.into_inner())
 }

@@ -1,0 +1,137 @@
+//! One case: bake, measure, time, draw.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
+
+use super::plan::Setting;
+use super::schema::{Case, Outcome};
+use crate::bake::{Edges, Options, Silent, feature_lines};
+use crate::deliver::deliver;
+use crate::error::{Error, Result};
+use crate::ingest::Input;
+use crate::measure::{self, measure};
+use crate::model::asset::Asset;
+use crate::model::frame::Frame;
+use crate::render::camera::{Framing, View};
+use crate::render::{Camera, Settings, Show, cpu, input};
+use crate::report::{self, png};
+
+/// Width and height of the frames that are timed.
+pub(super) const FRAME_SIZE: [u32; 2] = [512, 512];
+
+/// Width and height of the pictures: small, since the page holds two a case.
+const PICTURE_SIZE: [u32; 2] = [280, 280];
+
+/// An input as its cases share it.
+pub(super) struct Subject {
+    pub(super) input: Input,
+    pub(super) edges: Edges,
+}
+
+/// PNGs of a case: shaded, and each splat in a colour of its own.
+pub(super) type Pictures = [Vec<u8>; 2];
+
+/// Runs a case. Whatever goes wrong is its message: the other cases go on.
+pub(super) fn run(subject: &Subject, setting: &Setting, frames: usize) -> (Case, Option<Pictures>) {
+    let outcome = catch_unwind(AssertUnwindSafe(|| outcome(subject, setting, frames)));
+    // A panic is a bug of ours, and has been told by the program's hook.
+    let outcome = outcome.unwrap_or_else(|_| Err(Error::Internal("the case panicked".into())));
+    let (outcome, failure, pictures) = match outcome {
+        Ok((outcome, pictures)) => (Some(outcome), None, Some(pictures)),
+        Err(error) => (None, Some(error.to_string()), None),
+    };
+    let case = Case {
+        variant: setting.variant.name().into(),
+        max_error: setting.max_error.to_string(),
+        effort: setting.effort,
+        failure,
+        outcome,
+        fronts: Vec::new(),
+    };
+    (case, pictures)
+}
+
+fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outcome, Pictures)> {
+    let options = Options { edges: subject.edges.clone(), ..setting.options() };
+    let delivery = deliver(&subject.input, &options, &mut Silent)?;
+    let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
+    let lines = feature_lines(&subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
+    let measures = measure(&measure::Subject {
+        bytes: &delivery.bytes,
+        asset: &delivery.asset,
+        against: model(&subject.input),
+        lines: lines.as_deref(),
+    })?;
+    let outcome = Outcome {
+        bake_seconds: run.wall_seconds,
+        bake_cpu_seconds: run.cpu_seconds,
+        stages: run.stages,
+        frame_ms: frame_ms(&delivery.asset, frames)?,
+        measures,
+    };
+    let pictures = [draw_asset(&delivery.asset, Show::Shaded)?, draw_asset(&delivery.asset, Show::Splats)?];
+    Ok((outcome, pictures))
+}
+
+/// The input as what is drawn and measured against.
+pub(super) fn model(input: &Input) -> input::Model<'_> {
+    match input {
+        Input::Mesh(mesh) => input::Model::Mesh(mesh),
+        Input::Cloud(cloud) => input::Model::Cloud(cloud),
+    }
+}
+
+/// Milliseconds of one frame on the CPU reference: the median.
+fn frame_ms(asset: &Asset, frames: usize) -> Result<f64> {
+    let camera = iso(&asset.frame, asset.diagonal, FRAME_SIZE);
+    let mut times = Vec::with_capacity(frames);
+    for _ in 0..frames {
+        let start = Instant::now();
+        let picture = cpu::render(asset, &camera, &Settings::plain(FRAME_SIZE))?;
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+        std::hint::black_box(picture);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(median(&times))
+}
+
+/// The middle of sorted numbers, the mean of the middle two of an even count; 0 of none.
+fn median(sorted: &[f64]) -> f64 {
+    let middle = sorted.len() / 2;
+    match sorted.len() {
+        0 => 0.0,
+        count if count % 2 == 1 => sorted[middle],
+        _ => 0.5 * (sorted[middle - 1] + sorted[middle]),
+    }
+}
+
+fn iso(frame: &Frame, diagonal: f64, size: [u32; 2]) -> Camera {
+    Camera::framing(frame, diagonal, View::Iso, Framing::default(), size)
+}
+
+fn draw_asset(asset: &Asset, show: Show) -> Result<Vec<u8>> {
+    let settings = Settings { size: PICTURE_SIZE, show, ..Settings::default() };
+    let camera = iso(&asset.frame, asset.diagonal, PICTURE_SIZE);
+    png::encode(&cpu::render(asset, &camera, &settings)?.rgba)
+}
+
+/// The input, drawn as its bakes are.
+pub(super) fn draw_input(input: &Input) -> Result<Vec<u8>> {
+    let settings = Settings { size: PICTURE_SIZE, ..Settings::default() };
+    let model = model(input);
+    let camera = iso(&input.cloud().frame, model.diagonal(), PICTURE_SIZE);
+    png::encode(&input::render(model, &camera, &settings, &input::Style::default())?.rgba)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_the_middle() {
+        for (sorted, expected) in [(&[][..], 0.0), (&[3.0], 3.0), (&[1.0, 2.0], 1.5), (&[1.0, 2.0, 9.0], 2.0)]
+        {
+            assert!((median(sorted) - expected).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The numbers of a sweep as a table: one row a case.
+
+use super::schema::{Case, Model, Outcome, Sweep};
+use crate::error::{Error, Result};
+
+/// A column that an outcome fills.
+type Column = (&'static str, fn(&Outcome) -> String);
+
+/// The columns of an outcome. Names, units and order are those of `docs/sweep-schema.md`.
+const COLUMNS: [Column; 34] = [
+    ("bake_seconds", |o| o.bake_seconds.to_string()),
+    ("bake_cpu_seconds", |o| o.bake_cpu_seconds.to_string()),
+    ("frame_ms", |o| o.frame_ms.to_string()),
+    ("decode_seconds", |o| o.measures.cost.decode_seconds.to_string()),
+    ("bytes", |o| o.measures.cost.bytes.to_string()),
+    ("bytes_per_splat", |o| o.measures.cost.bytes_per_splat.to_string()),
+    ("bytes_per_point", |o| o.measures.cost.bytes_per_point.to_string()),
+    ("splats", |o| o.measures.cost.splats.to_string()),
+    ("flat", |o| o.measures.cost.flat.to_string()),
+    ("quadric", |o| o.measures.cost.quadric.to_string()),
+    ("clipped", |o| o.measures.cost.clipped.to_string()),
+    ("overlap", |o| optional(o.measures.cost.overlap)),
+    ("budget", |o| o.measures.budget.to_string()),
+    ("fit_rms", |o| o.measures.fit.rms.to_string()),
+    ("fit_p99", |o| o.measures.fit.p99.to_string()),
+    ("fit_max", |o| o.measures.fit.max.to_string()),
+    ("uncovered", |o| o.measures.uncovered.to_string()),
+    ("forward_rms", |o| o.measures.forward.rms.to_string()),
+    ("forward_max", |o| o.measures.forward.max.to_string()),
+    ("backward_rms", |o| o.measures.backward.rms.to_string()),
+    ("backward_max", |o| o.measures.backward.max.to_string()),
+    ("normal_rms_deg", |o| o.measures.normal.rms_deg.to_string()),
+    ("normal_p99_deg", |o| o.measures.normal.p99_deg.to_string()),
+    ("edge_rms", |o| optional(o.measures.edge.map(|edge| edge.rms))),
+    ("edge_max", |o| optional(o.measures.edge.map(|edge| edge.max))),
+    ("holes_missing", |o| o.measures.holes.missing.to_string()),
+    ("holes_extra", |o| o.measures.holes.extra.to_string()),
+    ("holes_through", |o| o.measures.holes.through.to_string()),
+    ("flip_mean", |o| o.measures.image.flip_mean.to_string()),
+    ("flip_p99", |o| o.measures.image.flip_p99.to_string()),
+    ("psnr", |o| o.measures.image.psnr.to_string()),
+    ("ssim", |o| o.measures.image.ssim.to_string()),
+    ("normal_flip_mean", |o| o.measures.image.normal_flip_mean.to_string()),
+    ("fragments", |o| o.measures.cost.fragments.to_string()),
+];
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
+
+/// The table, with a head, as RFC 4180 has it. What is not known is empty.
+///
+/// # Errors
+/// [`Error::Internal`] if it cannot be written, which nothing in memory causes.
+pub fn csv(sweep: &Sweep) -> Result<String> {
+    let lost = |error: &dyn std::fmt::Display| Error::Internal(format!("CSV: {error}"));
+    let mut table = ::csv::Writer::from_writer(Vec::new());
+    let head = ["model", "edges", "variant", "max_error", "effort"].into_iter();
+    let head = head.chain(COLUMNS.iter().map(|column| column.0)).chain(["fronts", "failure"]);
+    table.write_record(head).map_err(|error| lost(&error))?;
+    for model in &sweep.models {
+        for row in rows(model) {
+            table.write_record(row).map_err(|error| lost(&error))?;
+        }
+    }
+    let bytes = table.into_inner().map_err(|error| lost(&error))?;
+    String::from_utf8(bytes).map_err(|error| lost(&error))
+}
+
+/// A row a case; one for an input that could not be read.
+fn rows(model: &Model) -> Vec<Vec<String>> {
+    let row = |case: Option<&Case>| {
+        let outcome = case.and_then(|case| case.outcome.as_ref());
+        let of = |get: fn(&Case) -> String| case.map_or_else(String::new, get);
+        let mut row = vec![model.name.clone(), model.edges.clone()];
+        row.extend([of(|c| c.variant.clone()), of(|c| c.max_error.clone()), of(|c| c.effort.to_string())]);
+        row.extend(COLUMNS.iter().map(|(_, value)| outcome.map_or_else(String::new, value)));
+        row.push(of(|case| case.fronts.join(" ")));
+        row.push(case.map_or(&model.failure, |case| &case.failure).clone().unwrap_or_default());
+        row
+    };
+    if model.failure.is_some() { vec![row(None)] } else { model.cases.iter().map(|c| row(Some(c))).collect() }
+}
