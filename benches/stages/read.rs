@@ -1,0 +1,16 @@
+//! `read`: a binary PLY to a cloud. Floor: reading the file's bytes.
+
+use criterion::Criterion;
+use qsplat::{Result, ingest};
+
+use crate::cloud;
+use crate::harness::{POINTS, beside};
+
+pub fn bench(criterion: &mut Criterion) -> Result<()> {
+    for points in POINTS {
+        let path = cloud::file(points)?;
+        let limits = ingest::Limits::default();
+        beside(criterion, "read", points, || ingest::read(&path, &limits), || std::fs::read(&path));
+    }
+    Ok(())
+}
