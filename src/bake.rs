@@ -12,6 +12,8 @@ use crate::analyse::cloud_surface::cloud_surface;
 use crate::analyse::mesh_surface::{Features, Found, mesh_surface};
 use crate::analyse::surface::Surface;
 use crate::error::{Error, Result};
+pub use crate::fit::clip::Clips;
+pub use crate::fit::pose::Shapes;
 use crate::ingest::Input;
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::frame::Frame;
@@ -21,7 +23,7 @@ use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::grow::Grower;
-use crate::tolerance::DEFAULT_MAX_ERROR;
+use crate::tolerance::{DEFAULT_EDGE_ANGLE, DEFAULT_MAX_ERROR};
 
 /// Where the feature lines come from.
 #[derive(Clone, Debug, Default)]
@@ -132,6 +134,28 @@ pub struct Options {
     pub normals: Normals,
     /// What to do with colours.
     pub colors: Colors,
+    /// What splats may be pieces of; less than all is for comparison, at the same guarantees.
+    pub shapes: Shapes,
+    /// What splats may be cut by; less than all is for comparison, at the same guarantees.
+    pub clips: Clips,
+}
+
+/// Between the fastest bake and the fewest bytes.
+pub const DEFAULT_EFFORT: u8 = 5;
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            max_error: MaxError::default(),
+            edges: Edges::default(),
+            edge_angle: DEFAULT_EDGE_ANGLE,
+            effort: DEFAULT_EFFORT,
+            normals: Normals::default(),
+            colors: Colors::default(),
+            shapes: Shapes::default(),
+            clips: Clips::default(),
+        }
+    }
 }
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
@@ -204,7 +228,8 @@ pub fn bake(
     let colors_left_out = choose_colors(&mut surface, options.colors)?;
     clock.stage(progress, "sample");
     let round = |splat: &Splat| rounding(splat, max_error);
-    let grower = Grower { surface: &surface, budget: Budget::new(max_error), round: &round };
+    let budget = Budget::new(max_error, options.clips);
+    let grower = Grower { surface: &surface, budget, shapes: options.shapes, round: &round };
     let regions = Regions::new(surface.points.len());
     let total = surface.pieces.len() as u64;
     let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));

@@ -27,20 +27,13 @@
 //! farther from the sphere than the bound allows:
 //!
 //! ```
-//! use qsplat::bake::{Colors, Edges, MaxError, Normals, Options, Silent};
+//! use qsplat::bake::{MaxError, Options, Silent};
 //! use qsplat::{deliver, ingest};
 //!
 //! # fn main() -> qsplat::Result<()> {
 //! let path = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/sphere.ply");
 //! let input = ingest::read(path.as_ref(), &ingest::Limits::default())?;
-//! let options = Options {
-//!     max_error: MaxError::Relative(0.002),
-//!     edges: Edges::Auto,
-//!     edge_angle: 40.0,
-//!     effort: 5,
-//!     normals: Normals::Auto,
-//!     colors: Colors::Auto,
-//! };
+//! let options = Options { max_error: MaxError::Relative(0.002), ..Options::default() };
 //! let delivery = deliver::deliver(&input, &options, &mut Silent)?;
 //!
 //! let asset = &delivery.asset;

@@ -44,6 +44,7 @@ fn bake(name: &str) -> Asset {
         effort: 5,
         normals: Normals::Auto,
         colors: Colors::Auto,
+        ..Options::default()
     };
     deliver::deliver(&input, &options, &mut Silent).unwrap().asset
 }

@@ -31,6 +31,7 @@ fn bake(mesh: &Mesh) -> Delivery {
         effort: 3,
         normals: Normals::Auto,
         colors: Colors::Auto,
+        ..Options::default()
     };
     deliver(&Input::Mesh(mesh.clone()), &options, &mut Silent).unwrap()
 }
@@ -181,6 +182,7 @@ fn rotation_translation_and_scale_hardly_change_the_count() {
                 effort: 3,
                 normals: Normals::Auto,
                 colors: Colors::Auto,
+                ..Options::default()
             };
             let asset = deliver(&Input::Mesh(mesh.clone()), &options, &mut Silent).unwrap().asset;
             assert!(asset.fit.max <= asset.max_error, "{name}");

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use qsplat::bake::{Baked, Clock, Colors, Edges, MaxError, Normals, Options};
+use qsplat::bake::{Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, MaxError, Normals, Options, Shapes};
 use qsplat::error::{Error, Result};
 use qsplat::ingest::{self, Input};
 use qsplat::report::{self, Report};
@@ -42,6 +42,12 @@ pub(super) struct Arguments {
     /// Whether to keep the input's colours
     #[arg(long, value_enum, default_value_t)]
     color: ColorArgument,
+    /// What splats may be pieces of. `flat` is for comparison: the same guarantees, more splats
+    #[arg(long, value_enum, default_value_t)]
+    shapes: ShapesArgument,
+    /// What splats may be cut by. `straight` is for comparison: the same guarantees, more splats
+    #[arg(long, value_enum, default_value_t)]
+    clips: ClipsArgument,
     /// Writes the report as JSON (docs/report-schema.md)
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
@@ -49,8 +55,6 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     progress: Style,
 }
-
-const DEFAULT_EFFORT: u8 = 5;
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 enum NormalsArgument {
@@ -72,6 +76,24 @@ enum ColorArgument {
     Keep,
     /// Leave them out
     Drop,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum ShapesArgument {
+    /// Quadrics, and planes where those do
+    #[default]
+    All,
+    /// Planes alone
+    Flat,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum ClipsArgument {
+    /// Conics, and chords where those do
+    #[default]
+    Curved,
+    /// Chords alone
+    Straight,
 }
 
 fn edge_angle(text: &str) -> std::result::Result<f64, String> {
@@ -141,6 +163,14 @@ impl Arguments {
                 ColorArgument::Keep => Colors::Keep,
                 ColorArgument::Drop => Colors::Drop,
             },
+            shapes: match self.shapes {
+                ShapesArgument::All => Shapes::All,
+                ShapesArgument::Flat => Shapes::Flat,
+            },
+            clips: match self.clips {
+                ClipsArgument::Curved => Clips::Curved,
+                ClipsArgument::Straight => Clips::Straight,
+            },
         })
     }
 
@@ -188,6 +218,8 @@ impl Arguments {
             effort: self.effort,
             normals: name(self.normals.to_possible_value()),
             color: name(self.color.to_possible_value()),
+            shapes: name(self.shapes.to_possible_value()),
+            clips: name(self.clips.to_possible_value()),
         }
     }
 }

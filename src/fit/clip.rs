@@ -20,6 +20,18 @@ pub struct ClipTolerance {
     pub outset: f64,
     /// How far a curve may miss that; no more than `outset`, or it could cut the surface.
     pub miss: f64,
+    /// Which curves may be used.
+    pub clips: Clips,
+}
+
+/// Which clip curves a splat may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clips {
+    /// Chords, conics, and corners of straight arms.
+    #[default]
+    Curved,
+    /// Chords alone, for comparison: where none follows the line, the splat must be smaller.
+    Straight,
 }
 
 /// How much to do for a clip curve.
@@ -36,6 +48,9 @@ const FARTHEST_CONTROL: f64 = 16.0;
 
 /// A polyline that turns by more than this at a vertex (sine of 15°) may have a corner there.
 const CORNER_SINE: f64 = 0.26;
+
+/// Where there are only chords, every left turn that one of them cannot follow is a corner.
+const STRAIGHT_CORNER_SINE: f64 = 0.0;
 
 /// Fits clip curves to one outline, in the splat's `(u, v)`; `None` where they cannot follow it.
 #[must_use]
@@ -60,7 +75,11 @@ fn cut_run(run: &Run, radii: DVec2, tolerance: &ClipTolerance, care: Care) -> Op
     {
         return Some(vec![clip]);
     }
-    let arcs = split_at_convex_corners(run)?;
+    let sine = match tolerance.clips {
+        Clips::Curved => CORNER_SINE,
+        Clips::Straight => STRAIGHT_CORNER_SINE,
+    };
+    let arcs = split_at_convex_corners(run, sine)?;
     arcs.iter().map(|arc| one_curve(&extend(arc, radii)?, radii, tolerance, care)).collect()
 }
 
@@ -75,6 +94,9 @@ fn one_curve(line: &[DVec2], radii: DVec2, tolerance: &ClipTolerance, care: Care
     }
     if line.iter().all(|&p| turn(p1, p3, p).abs() <= 0.5 * tolerance.miss * chord) {
         return Some(ClipCurve::chord(alpha1, alpha3));
+    }
+    if tolerance.clips == Clips::Straight {
+        return None;
     }
     if let Some(clip) = corner(line, radii, tolerance) {
         return Some(clip);
@@ -135,15 +157,16 @@ fn corner(line: &[DVec2], radii: DVec2, tolerance: &ClipTolerance) -> Option<Cli
     })
 }
 
-/// Cuts a run at the vertices where it turns sharply left: convex corners of the surface.
+/// Cuts a run at the vertices where it turns left by more than `sine`: convex corners of the
+/// surface.
 ///
 /// `None` for a loop without any, which no curve from border to border can follow.
-fn split_at_convex_corners(run: &Run) -> Option<Vec<Vec<DVec2>>> {
+fn split_at_convex_corners(run: &Run, sine: f64) -> Option<Vec<Vec<DVec2>>> {
     let (points, count) = (&run.points, run.points.len());
     let is_corner = |n: usize| {
         let before = (points[n] - points[(n + count - 1) % count]).normalize_or_zero();
         let after = (points[(n + 1) % count] - points[n]).normalize_or_zero();
-        before.perp_dot(after) > CORNER_SINE || (before.dot(after) < 0.0 && before.perp_dot(after) > 0.0)
+        before.perp_dot(after) > sine || (before.dot(after) < 0.0 && before.perp_dot(after) > 0.0)
     };
     if run.closed {
         let corners: Vec<usize> = (0..count).filter(|&n| is_corner(n)).collect();
@@ -243,12 +266,20 @@ pub fn bounds_only<'a>(
 mod tests {
     use super::*;
 
-    const TOLERANCE: ClipTolerance = ClipTolerance { outset: 0.002, miss: 0.002 };
+    const TOLERANCE: ClipTolerance = ClipTolerance { outset: 0.002, miss: 0.002, clips: Clips::Curved };
+    const STRAIGHT: ClipTolerance = ClipTolerance { clips: Clips::Straight, ..TOLERANCE };
 
     fn check(line: &[DVec2], closed: bool, radii: DVec2) -> Option<usize> {
-        let clips = fit(line, closed, radii, &TOLERANCE, Care::Nearest)?;
+        check_within(line, closed, radii, &TOLERANCE)
+    }
+
+    fn check_within(line: &[DVec2], closed: bool, radii: DVec2, tolerance: &ClipTolerance) -> Option<usize> {
+        let clips = fit(line, closed, radii, tolerance, Care::Nearest)?;
+        if tolerance.clips == Clips::Straight {
+            assert!(clips.iter().all(ClipCurve::is_straight), "{clips:?}");
+        }
         let cuts = |p: DVec2| clips.iter().any(|clip| clip.cuts(p, radii));
-        follows(line, closed, radii, cuts, &TOLERANCE).then_some(clips.len())
+        follows(line, closed, radii, cuts, tolerance).then_some(clips.len())
     }
 
     fn arc(radius: f64, center: DVec2, from: f64, to: f64) -> Vec<DVec2> {
@@ -286,6 +317,26 @@ mod tests {
         assert_eq!(check(&inner, false, DVec2::ONE), Some(1), "kept inside");
         let outer: Vec<DVec2> = inner.into_iter().rev().collect();
         assert_eq!(check(&outer, false, DVec2::ONE), Some(1), "kept outside");
+    }
+
+    #[test]
+    fn chords_follow_what_is_convex_and_straight_and_nothing_else() {
+        let points = |list: &[(f64, f64)]| list.iter().map(|&(x, y)| DVec2::new(x, y)).collect::<Vec<_>>();
+        let chords = |line: &[DVec2], closed| check_within(line, closed, DVec2::new(1.0, 0.6), &STRAIGHT);
+        assert_eq!(chords(&points(&[(-2.0, 0.1), (0.0, 0.12), (2.0, 0.14)]), false), Some(1));
+        let convex = points(&[(-2.0, 0.0), (0.1, -0.2), (0.3, 2.0)]);
+        assert_eq!(chords(&convex, false), Some(2), "their cuts unite to the corner");
+        let concave: Vec<DVec2> = convex.into_iter().rev().collect();
+        assert_eq!(chords(&concave, false), None, "no union of half planes is a concave corner");
+        assert_eq!(
+            chords(&points(&[(-0.3, -0.3), (0.3, -0.3), (0.3, 0.3), (-0.3, 0.3)]), true),
+            Some(4),
+            "a whole square face"
+        );
+        let blunt = points(&[(-0.6, 0.0), (0.6, 0.0), (0.0, 0.05)]);
+        assert_eq!(chords(&blunt, true), Some(3), "a triangle's corners count however blunt");
+        let hole: Vec<DVec2> = arc(1.2, DVec2::new(0.2, 1.4), -2.6, -0.5).into_iter().rev().collect();
+        assert_eq!(chords(&hole, false), None, "the outside of a circle");
     }
 
     #[test]

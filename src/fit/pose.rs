@@ -71,11 +71,24 @@ pub struct Principal {
     pub rank: u8,
 }
 
+/// Which surfaces a splat may be a piece of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shapes {
+    /// Quadrics, and planes where those do.
+    #[default]
+    All,
+    /// Planes alone, for comparison.
+    Flat,
+}
+
 /// Rounds of fitting and turning. Each squares the slope that is left, so two leave nothing
 /// that matters of a frame that starts within a few degrees; a third serves bad starts.
 const ROUNDS: usize = 3;
 
 /// Fits a quadric to weighted points, from a first pose, and brings it into its principal frame.
+///
+/// Where only planes are wanted, the plane is fitted, and `i, j` are still the principal
+/// directions of the points: along these an ellipse of a plane reaches farthest, too.
 ///
 /// `turn` allows `i, j` to leave the start's directions for the principal ones: not wanted
 /// where the curvatures differ so little that the directions would be noise, which `least`
@@ -83,6 +96,7 @@ const ROUNDS: usize = 3;
 #[must_use]
 pub fn principal(
     start: &Pose,
+    shapes: Shapes,
     radius: f64,
     least: f64,
     points: impl Iterator<Item = (DVec3, f64)> + Clone,
@@ -96,6 +110,10 @@ pub fn principal(
             moments.add(local.x, local.y, local.z, weight);
         }
         height = moments.solve();
+        if shapes == Shapes::Flat {
+            let Height { h, c, d, .. } = moments.solve_plane();
+            height = Height { h, c, d, ..height };
+        }
         if round + 1 < ROUNDS {
             pose = pose.settled(&height);
         }
@@ -111,9 +129,18 @@ pub fn principal(
             theta -= FRAC_PI_2.copysign(theta);
             curvature = curvature.yx();
         }
-        return Principal { pose: pose.turned(theta), curvature, rank: height.rank };
+        return Principal { pose: pose.turned(theta), curvature: kept(shapes, curvature), rank: height.rank };
     }
-    Principal { pose, curvature: DVec2::new(height.a, height.b), rank: height.rank }
+    let curvature = kept(shapes, DVec2::new(height.a, height.b));
+    Principal { pose, curvature, rank: height.rank }
+}
+
+/// The curvature that a splat of these shapes keeps.
+fn kept(shapes: Shapes, curvature: DVec2) -> DVec2 {
+    match shapes {
+        Shapes::All => curvature,
+        Shapes::Flat => DVec2::ZERO,
+    }
 }
 
 #[cfg(test)]
@@ -133,7 +160,7 @@ mod tests {
             .collect();
         let start =
             Pose::at(plant.center + 0.01 * plant.axes.z_axis, plant.axes.z_axis + 0.2 * plant.axes.x_axis);
-        let found = principal(&start, 0.1, 1e-6, points.iter().map(|&point| (point, 1.0)));
+        let found = principal(&start, Shapes::All, 0.1, 1e-6, points.iter().map(|&point| (point, 1.0)));
         let same = if (found.curvature - curvature).length() < (found.curvature - curvature.yx()).length() {
             found.pose.axes.x_axis
         } else {
@@ -148,5 +175,28 @@ mod tests {
         assert!(found.pose.axes.z_axis.distance(normal) < 1e-3);
         assert!(same.dot(plant.axes.x_axis).abs() > 1.0 - 1e-4);
         assert!((found.pose.axes.determinant() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_plane_over_a_ridge_lies_along_it() {
+        let plant = Pose::at(DVec3::new(0.2, -0.1, 0.4), DVec3::new(1.0, 2.0, 0.5)).turned(0.7);
+        let points: Vec<DVec3> = (0..200)
+            .map(|n| {
+                let (sin, cos) = libm::sincos(2.4 * f64::from(n));
+                let uv = 0.1 * (f64::from(n) / 200.0).sqrt() * DVec2::new(cos, sin);
+                plant.center + plant.axes * uv.extend(2.0 * uv.x * uv.x)
+            })
+            .collect();
+        let weighted = points.iter().map(|&point| (point, 1.0));
+        let start = Pose::at(plant.center, plant.axes.z_axis + 0.1 * plant.axes.y_axis);
+        let found = principal(&start, Shapes::Flat, 0.1, 1e-6, weighted);
+        assert_eq!(found.curvature, DVec2::ZERO);
+        assert!(found.pose.axes.z_axis.dot(plant.axes.z_axis) > 1.0 - 1e-5);
+        let along = |axis: DVec3| axis.dot(plant.axes.x_axis).abs();
+        let axes = [found.pose.axes.x_axis, found.pose.axes.y_axis].map(along);
+        assert!(axes.into_iter().any(|a| a > 1.0 - 1e-4), "{axes:?}");
+        // The mean of x² over the disc is a quarter of its square radius.
+        let height = plant.to_local(found.pose.center).z;
+        assert!((height - 2.0 * 0.25 * 0.01).abs() < 2e-4, "{height}");
     }
 }

@@ -67,6 +67,20 @@ impl Moments {
         self.right += row * (weight * w);
     }
 
+    /// The least-squares plane: a height whose second-order terms are zero.
+    #[must_use]
+    pub fn solve_plane(&self) -> Height {
+        let second_order = 3..6;
+        let mut plane = self.clone();
+        for term in second_order {
+            plane.normal.fill_row(term, 0.0);
+            plane.normal.fill_column(term, 0.0);
+            plane.right[term] = 0.0;
+        }
+        let (x, rank) = least_norm(&plane.normal, &plane.right);
+        Height { h: x[0], c: x[1] / self.radius, d: x[2] / self.radius, rank, ..Height::default() }
+    }
+
     /// The least-squares polynomial; of all that fit equally well, the least.
     #[must_use]
     pub fn solve(&self) -> Height {
@@ -183,6 +197,20 @@ mod tests {
                 assert!((x - y).abs() <= 1e-5 * plant.b.abs().max(plant.h), "{x} {y} at {radius}");
             }
         }
+    }
+
+    #[test]
+    fn a_plane_halves_the_sagitta_of_a_bowl_and_keeps_a_slope() {
+        let points = disc(0.5);
+        let mut moments = Moments::new(0.5);
+        for &(u, v) in &points {
+            moments.add(u, v, 0.3 * u - 0.1 * v + u * u + v * v, 1.0);
+        }
+        let plane = moments.solve_plane();
+        // The mean of u² + v² over points spread evenly over a disc is half that of its rim.
+        assert!((plane.h - 0.125).abs() < 5e-3, "{plane:?}");
+        assert!((plane.c - 0.3).abs() < 2e-2 && (plane.d + 0.1).abs() < 2e-2, "{plane:?}");
+        assert!(plane.a == 0.0 && plane.e == 0.0 && plane.b == 0.0 && plane.rank == 3);
     }
 
     #[test]

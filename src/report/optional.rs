@@ -27,12 +27,19 @@ pub fn all(asset: &Asset, counts: &Counts, origin: Option<&Origin>) -> Vec<Optio
         reason: (!present).then(|| reason.into()),
     };
     vec![
-        thing("curvature", counts.quadric > 0, "every splat is flat within the error budget"),
+        thing("curvature", counts.quadric > 0, no_curvature(origin)),
         thing("clips", counts.clipped > 0, no_clips(origin)),
-        thing("curved_clips", counts.curved_clips > 0, no_curved_clips(counts)),
+        thing("curved_clips", counts.curved_clips > 0, no_curved_clips(counts, origin)),
         thing("colors", asset.has_colors, no_colors(origin)),
         thing("tilt", false, "the fit turns each normal until the linear terms of its quadric vanish"),
     ]
+}
+
+fn no_curvature(origin: Option<&Origin>) -> &'static str {
+    match origin {
+        Some(origin) if origin.options.shapes == "flat" => "every splat is flat as asked (--shapes flat)",
+        _ => "every splat is flat within the error budget",
+    }
 }
 
 fn no_clips(origin: Option<&Origin>) -> &'static str {
@@ -44,8 +51,14 @@ fn no_clips(origin: Option<&Origin>) -> &'static str {
     }
 }
 
-fn no_curved_clips(counts: &Counts) -> &'static str {
-    if counts.clipped == 0 { "no splat is cut" } else { "every cut is straight within the error budget" }
+fn no_curved_clips(counts: &Counts, origin: Option<&Origin>) -> &'static str {
+    match origin {
+        _ if counts.clipped == 0 => "no splat is cut",
+        Some(origin) if origin.options.clips == "straight" => {
+            "every cut is straight as asked (--clips straight)"
+        }
+        _ => "every cut is straight within the error budget",
+    }
 }
 
 fn no_colors(origin: Option<&Origin>) -> &str {

@@ -55,6 +55,10 @@ pub struct Options {
     pub normals: String,
     /// `auto`, `keep` or `drop`.
     pub color: String,
+    /// `all` or `flat`.
+    pub shapes: String,
+    /// `curved` or `straight`.
+    pub clips: String,
 }
 
 /// How the splats were chosen, with every case in which a fit fell back to less.

@@ -62,6 +62,8 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         effort: 5,
         normals: "auto".into(),
         color: "auto".into(),
+        shapes: "all".into(),
+        clips: "curved".into(),
     };
     let stage = |name: &str, wall_seconds| StageTime {
         name: name.into(),

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::fit::clip::ClipTolerance;
+use crate::fit::clip::{ClipTolerance, Clips};
 use crate::tolerance::{CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, FIT_SHARE, LINE_FIT_SHARE};
 
 /// Distances that growing a splat must keep, in model units.
@@ -30,15 +30,19 @@ const PAD_SHARE: f64 = 0.5;
 const PAD_RADIUS_SHARE: f64 = 0.25;
 
 impl Budget {
-    /// Shares out a bound in model units.
+    /// Shares out a bound in model units, for splats cut by these curves.
     #[must_use]
-    pub fn new(max_error: f64) -> Self {
+    pub fn new(max_error: f64, clips: Clips) -> Self {
         Self {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
             rim: 2.0 * FIT_SHARE * max_error,
             pad: PAD_SHARE * max_error,
-            clip: ClipTolerance { outset: CLIP_OUTSET_SHARE * max_error, miss: CLIP_MISS_SHARE * max_error },
+            clip: ClipTolerance {
+                outset: CLIP_OUTSET_SHARE * max_error,
+                miss: CLIP_MISS_SHARE * max_error,
+                clips,
+            },
         }
     }
 
@@ -62,7 +66,7 @@ mod tests {
 
     #[test]
     fn padding_and_trust_are_inverse() {
-        let budget = Budget::new(0.01);
+        let budget = Budget::new(0.01, Clips::Curved);
         for trusted in [DVec2::new(1e-4, 0.5), DVec2::new(0.02, 0.019), DVec2::new(0.0201, 3.0)] {
             assert!(budget.trusted(budget.padded(trusted)).distance(trusted) < 1e-15);
         }

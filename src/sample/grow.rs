@@ -14,7 +14,7 @@ use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care};
 use crate::fit::ellipse::crossings;
-use crate::fit::pose::{Pose, principal};
+use crate::fit::pose::{Pose, Shapes, principal};
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
 
@@ -79,6 +79,8 @@ pub struct Grower<'a> {
     pub surface: &'a Surface,
     /// The distances to keep.
     pub budget: Budget,
+    /// What splats may be pieces of.
+    pub shapes: Shapes,
     /// Splats are rounded before they are judged and cut, so that storing them changes
     /// nothing that was judged.
     pub round: &'a Round<'a>,
@@ -165,7 +167,7 @@ impl Grower<'_> {
             (self.surface.point(member.point), weight)
         });
         let points = members.chain(rim);
-        let fitted = principal(pose, largest, least, points);
+        let fitted = principal(pose, self.shapes, largest, least, points);
         if fitted.pose.axes.z_axis.dot(pose.axes.z_axis) < TURNED {
             // The ellipse has turned so far that it reaches other points.
             if !region.gather(self.surface, &fitted.pose, outer, seeds) {

@@ -45,7 +45,8 @@ pub(super) fn settle(
         let outer = grower.budget.padded(domain.radii);
         let sagitta = (domain.curvature * outer * outer).abs().max_element();
         let plane = (sagitta <= FLAT_SAGITTA * grower.budget.fit).then_some(DVec2::ZERO);
-        for curvature in plane.into_iter().chain([domain.curvature]) {
+        let quadric = (domain.curvature != DVec2::ZERO).then_some(domain.curvature);
+        for curvature in plane.into_iter().chain(quadric) {
             let found = rounded(grower, &domain.pose, outer, curvature)
                 .and_then(|splat| finish(grower, splat, domain.rank, seeds, region))
                 .filter(|candidate| candidate.pieces.binary_search(&piece).is_ok());

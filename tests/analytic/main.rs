@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, clippy::float_cmp)]
 
 mod distance;
+mod limited;
 mod shapes;
 mod views;
 
@@ -50,19 +51,17 @@ fn mesh(name: &str) -> Mesh {
 }
 
 fn bake(name: &str, mesh: &Mesh, share: f64) -> Asset {
+    bake_as(name, mesh, Options { max_error: MaxError::Relative(share), ..Options::default() })
+}
+
+/// With the feature lines that lie beside the fixture.
+fn bake_as(name: &str, mesh: &Mesh, options: Options) -> Asset {
     let lines = path(&format!("{name}.edges.obj"));
     let edges = match lines.exists() {
         true => Edges::Given(ingest::read_edges(&lines, &Limits::default()).unwrap()),
         false => Edges::Auto,
     };
-    let options = Options {
-        max_error: MaxError::Relative(share),
-        edges,
-        edge_angle: 40.0,
-        effort: 5,
-        normals: Normals::Auto,
-        colors: Colors::Auto,
-    };
+    let options = Options { edges, ..options };
     deliver(&Input::Mesh(mesh.clone()), &options, &mut Silent).unwrap().asset
 }
 

@@ -62,6 +62,7 @@ pub fn options(max_error: MaxError) -> Options {
         effort: 3,
         normals: Normals::Auto,
         colors: qsplat::bake::Colors::Auto,
+        ..Options::default()
     }
 }
 

@@ -28,6 +28,7 @@ fn options(effort: u8, edges: Edges) -> Options {
         effort,
         normals: qsplat::bake::Normals::Auto,
         colors: qsplat::bake::Colors::Auto,
+        ..Options::default()
     }
 }
 

@@ -1,0 +1,59 @@
+//! Bakes that do without quadrics or without curved cuts, for comparison: they keep every
+//! guarantee and cost more splats.
+
+use qsplat::bake::{Clips, MaxError, Options, Shapes};
+use qsplat::model::asset::Asset;
+use qsplat::model::clip_curve::ClipCurve;
+use qsplat::model::splat::Kind;
+
+use super::{BUDGETS, RIM, backward, bake, bake_as, distance, mesh, views};
+
+fn limited(name: &str, share: f64, shapes: Shapes, clips: Clips) -> Asset {
+    let mesh = mesh(name);
+    let max_error = MaxError::Relative(share);
+    let asset = bake_as(name, &mesh, Options { max_error, shapes, clips, ..Options::default() });
+    if shapes == Shapes::Flat {
+        assert!(asset.splats.iter().all(|splat| splat.kind() == Kind::Flat), "{name}: a splat is curved");
+    }
+    if clips == Clips::Straight {
+        let straight = asset.splats.iter().flat_map(|splat| &splat.clips).all(ClipCurve::is_straight);
+        assert!(straight, "{name}: a cut is curved");
+    }
+    let facets = distance::Facets::new(&mesh);
+    let bound = asset.max_error * asset.frame.scale();
+    let stray = backward(&asset, &|p| facets.distance(p, 4.0 * bound)) / bound;
+    assert!(asset.fit.max <= asset.max_error, "{name}: the fit breaks its bound");
+    assert!(stray <= RIM, "{name}: splats stray {stray:.3} bounds from the mesh");
+    // Coarser budgets are wider than the pixels left aside along the silhouette.
+    if share <= BUDGETS[1] {
+        let faults = views::compare(&mesh, &asset).faults(0);
+        assert!(faults.is_empty(), "{name}: {faults:?}");
+    }
+    asset
+}
+
+#[test]
+fn planes_keep_the_guarantees_and_cost_more() {
+    for name in ["torus", "capped-cylinder"] {
+        let flat = limited(name, BUDGETS[1], Shapes::Flat, Clips::Curved).splats.len();
+        let all = bake(name, &mesh(name), BUDGETS[1]).splats.len();
+        assert!(flat > 2 * all, "{name}: {flat} planes for {all} quadrics");
+    }
+}
+
+#[test]
+fn chords_keep_the_guarantees_and_cost_more() {
+    for name in ["capped-cylinder", "plate"] {
+        let straight = limited(name, BUDGETS[1], Shapes::All, Clips::Straight).splats.len();
+        let curved = bake(name, &mesh(name), BUDGETS[1]).splats.len();
+        assert!(straight > curved, "{name}: {straight} with chords, {curved} with conics");
+    }
+}
+
+/// A disc of radius `r` on a sphere strays from its plane by `r²`: half the budget, twice the splats.
+#[test]
+fn planes_over_a_sphere_number_as_the_inverse_of_the_budget() {
+    let count = |share| limited("sphere", share, Shapes::Flat, Clips::Curved).splats.len() as f64;
+    let slope = (count(BUDGETS[1]) / count(BUDGETS[0])).ln() / (BUDGETS[1] / BUDGETS[0]).ln();
+    assert!((slope + 1.0).abs() <= 0.15, "slope {slope:.2}");
+}
