@@ -5,7 +5,7 @@ use criterion::Criterion;
 use glam::DVec2;
 use qsplat::Result;
 use qsplat::analyse::canonical::mix;
-use qsplat::fit::clip::{Care, ClipTolerance, fit};
+use qsplat::fit::clip::{Care, ClipTolerance, Clips, fit};
 use qsplat::model::clip_curve::ClipCurve;
 use qsplat::sample::budget::Budget;
 use rayon::prelude::*;
@@ -25,7 +25,7 @@ const RADII: DVec2 = DVec2::new(0.02, 0.015);
 const MAX_ERROR: f64 = 1e-3;
 
 pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
-    let tolerance = Budget::new(MAX_ERROR).clip;
+    let tolerance = Budget::new(MAX_ERROR, Clips::Curved).clip;
     for points in POINTS {
         let lines: Vec<Vec<DVec2>> = (0..points / VERTICES).map(|n| line(n as u64)).collect();
         let fitted = curves(&lines, &tolerance).iter().filter(|curves| curves.is_some()).count();

@@ -3,7 +3,7 @@
 
 use criterion::Criterion;
 use qsplat::Result;
-use qsplat::bake::{MaxError, Options, Silent, bake};
+use qsplat::bake::{Options, Silent, bake};
 use qsplat::format::quantize::Quantizer;
 use qsplat::ingest::Input;
 use serde_json::json;
@@ -20,7 +20,7 @@ pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
         let input = Input::Cloud(cloud::cloud(points));
         let rounding = |splat: &_, max_error| Quantizer::new(max_error).snap(splat).ok();
         let mut outcome = Ok(0);
-        let seconds = || match bake(&input, &options(), &rounding, &mut Silent) {
+        let seconds = || match bake(&input, &Options::default(), &rounding, &mut Silent) {
             Ok(baked) => {
                 outcome = Ok(baked.asset.splats.len());
                 let chosen = baked.stages.iter().filter(|stage| STAGES.contains(&stage.name.as_str()));
@@ -39,16 +39,4 @@ pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// The program's defaults.
-fn options() -> Options {
-    Options {
-        max_error: MaxError::default(),
-        edges: Default::default(),
-        edge_angle: 40.0,
-        effort: 5,
-        normals: Default::default(),
-        colors: Default::default(),
-    }
 }

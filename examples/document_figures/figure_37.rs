@@ -87,11 +87,18 @@ fn row(cloud: &Cloud, share: f64, diagonal: f64) -> Row {
 
 /// Which of the document's findings hold here.
 fn verdict(rows: &[Row]) -> String {
-    let falls =
-        |value: &dyn Fn(&Row) -> f64| match rows.windows(2).all(|pair| value(&pair[1]) < value(&pair[0])) {
-            true => "falls at every step",
-            false => "does not fall at every step",
-        };
+    let falls = |value: &dyn Fn(&Row) -> f64| {
+        let until = rows.windows(2).take_while(|pair| value(&pair[1]) < value(&pair[0])).count();
+        let least = rows.iter().map(value).fold(f64::INFINITY, f64::min);
+        match rows.last() {
+            Some(last) if until + 1 < rows.len() => format!(
+                "falls up to a radius of {:.2} % and ends {:.0} % above its least",
+                100.0 * rows[until].0,
+                100.0 * (value(last) / least - 1.0)
+            ),
+            _ => "falls at every step".to_owned(),
+        }
+    };
     let exponent = match (rows.first(), rows.last()) {
         (Some(first), Some(last)) => {
             libm::log(last.1.splats as f64 / first.1.splats as f64) / libm::log(last.0 / first.0)
@@ -99,7 +106,7 @@ fn verdict(rows: &[Row]) -> String {
         _ => 0.0,
     };
     format!(
-        "Here the number of splats {} (as the radius to the power {exponent:.2}), the area {}, the time {}.",
+        "Here the number of splats {}, as the radius to the power {exponent:.2}; the area {}; the time {}.",
         falls(&|row| row.1.splats as f64),
         falls(&|row| row.1.area),
         falls(&|row| row.2),

@@ -9,11 +9,13 @@
 mod figure_33;
 mod figure_37;
 mod hull;
+mod layout;
 mod models;
 mod page;
 mod plot;
 mod scatter;
-mod tables_1_2;
+mod table_1;
+mod table_2;
 mod uniform;
 
 use std::path::PathBuf;
@@ -26,7 +28,8 @@ use page::Page;
 fn make(page: &mut Page) -> Result<()> {
     figure_33::make(page)?;
     figure_37::make(page)?;
-    tables_1_2::make(page)?;
+    table_1::make(page)?;
+    table_2::make(page)?;
     page.write()
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use qsplat::bake::{Edges, Options};
 use qsplat::ingest::{Input, Limits, read, read_edges};
 use qsplat::model::polyline::Polylines;
 use qsplat::{Error, Result};
@@ -14,6 +15,26 @@ pub struct Model {
     pub input: Input,
     /// Its feature lines, where they are known.
     pub lines: Option<Polylines>,
+}
+
+impl Model {
+    /// The program's defaults, with the model's lines where they are known.
+    pub fn options(&self) -> Options {
+        let edges = self.lines.clone().map_or(Edges::Auto, Edges::Given);
+        Options { edges, ..Options::default() }
+    }
+}
+
+/// CAD parts: the fixtures', and those of the user's folder.
+///
+/// # Errors
+/// As [`read`].
+pub fn parts() -> Result<Vec<Model>> {
+    let mut parts = vec![fixture("capped-cylinder.ply")?, fixture("plate.ply")?, fixture("part.ply")?];
+    for file in ["fandisk.obj", "abc-00000049.obj"] {
+        parts.extend(external(file)?);
+    }
+    Ok(parts)
 }
 
 /// A model of the user's folder, or `stand_in` of the fixtures where there is none.
@@ -55,8 +76,9 @@ pub fn fixture(file: &str) -> Result<Model> {
 fn model(path: &Path, file: &str) -> Result<Model> {
     let limits = Limits::default();
     let stem = file.split('.').next().unwrap_or(file);
-    let lines = path.with_file_name(format!("{stem}.edges.obj"));
-    let lines = lines.exists().then(|| read_edges(&lines, &limits)).transpose()?;
+    let beside = ["edges", "features"].map(|kind| path.with_file_name(format!("{stem}.{kind}.obj")));
+    let lines = beside.iter().find(|lines| lines.exists());
+    let lines = lines.map(|lines| read_edges(lines, &limits)).transpose()?;
     Ok(Model { name: stem.to_owned(), input: read(path, &limits)?, lines })
 }
 

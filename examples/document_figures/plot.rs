@@ -43,7 +43,13 @@ impl Plot<'_> {
             .y_label_area_size(70)
             .build_cartesian_2d(0.0..1.05 * right, 0.0..1.05 * top)
             .map_err(failed)?;
-        chart.configure_mesh().x_desc(self.across).y_desc(self.up).draw().map_err(failed)?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .x_desc(self.across)
+            .y_desc(self.up)
+            .draw()
+            .map_err(failed)?;
         for (number, (name, curve)) in self.curves.iter().enumerate() {
             let color = Palette99::pick(number).to_rgba();
             chart
@@ -54,7 +60,12 @@ impl Plot<'_> {
         }
         if self.curves.len() > 1 {
             let mut legend = chart.configure_series_labels();
-            legend.background_style(WHITE.mix(0.8)).border_style(BLACK).draw().map_err(failed)?;
+            legend
+                .position(SeriesLabelPosition::LowerRight)
+                .background_style(WHITE.mix(0.8))
+                .border_style(BLACK)
+                .draw()
+                .map_err(failed)?;
         }
         area.present().map_err(failed)
     }
