@@ -14,7 +14,7 @@ use crate::notes::Notes;
 use crate::{cloud, floor};
 
 pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
-    for &points in affordable() {
+    for points in affordable() {
         let input = cloud::file(points)?;
         let mut runs = Vec::new();
         let mut failure = None;

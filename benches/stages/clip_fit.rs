@@ -11,7 +11,7 @@ use qsplat::sample::budget::Budget;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::harness::{POINTS, beside};
+use crate::harness::{beside, inputs};
 use crate::notes::Notes;
 use crate::{cloud, floor};
 
@@ -26,7 +26,7 @@ const MAX_ERROR: f64 = 1e-3;
 
 pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
     let tolerance = Budget::new(MAX_ERROR, Clips::Curved).clip;
-    for points in POINTS {
+    for points in inputs() {
         let lines: Vec<Vec<DVec2>> = (0..points / VERTICES).map(|n| line(n as u64)).collect();
         let fitted = curves(&lines, &tolerance).iter().filter(|curves| curves.is_some()).count();
         notes.add("clip fit", points, json!({ "lines": lines.len(), "fitted": fitted }));

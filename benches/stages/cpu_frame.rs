@@ -5,13 +5,13 @@ use qsplat::Result;
 use qsplat::render::cpu;
 use serde_json::json;
 
-use crate::harness::{POINTS, beside};
+use crate::harness::{beside, inputs};
 use crate::notes::Notes;
 use crate::{assets, frame};
 
 pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
     let settings = frame::settings();
-    for points in POINTS {
+    for points in inputs() {
         let asset = assets::asset(points)?;
         let (flat, camera) = (frame::flat(&asset), frame::camera(&asset));
         notes.add("cpu frame", points, json!({ "splats": asset.splats.len() }));

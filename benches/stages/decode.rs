@@ -4,10 +4,11 @@ use criterion::Criterion;
 use qsplat::{Result, format};
 
 use crate::assets;
-use crate::harness::{POINTS, beside};
+use crate::harness::{beside, inputs};
+use crate::notes::Notes;
 
-pub fn bench(criterion: &mut Criterion) -> Result<()> {
-    for points in POINTS {
+pub fn bench(criterion: &mut Criterion, _: &mut Notes) -> Result<()> {
+    for points in inputs() {
         let asset = assets::asset(points)?;
         let bytes = format::encode(&asset)?;
         let limits = format::Limits::default();

@@ -7,11 +7,12 @@ use qsplat::fit::pose::Principal;
 use rayon::prelude::*;
 
 use crate::cloud::{Analysed, analysed};
-use crate::harness::{POINTS, beside};
+use crate::harness::{beside, inputs};
+use crate::notes::Notes;
 use crate::{assets, floor};
 
-pub fn bench(criterion: &mut Criterion) -> Result<()> {
-    for points in POINTS {
+pub fn bench(criterion: &mut Criterion, _: &mut Notes) -> Result<()> {
+    for points in inputs() {
         let analysed = analysed(points)?;
         let positions = &analysed.points.positions;
         beside(criterion, "fit", points, || quadrics(&analysed), || floor::neighbour_pass(positions));

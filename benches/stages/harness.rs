@@ -8,7 +8,10 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput};
 
 /// Points of the inputs.
-pub const POINTS: [usize; 3] = [100_000, 1_000_000, 4_000_000];
+const POINTS: [usize; 3] = [100_000, 1_000_000, 4_000_000];
+
+/// The greatest input of a stage that takes minutes on the next, unless more is asked for.
+const AFFORDABLE: usize = 1_000_000;
 
 /// Runs of each measurement: the harness takes no fewer.
 const RUNS: usize = 10;
@@ -28,10 +31,27 @@ pub fn criterion() -> Criterion {
         .configure_from_args()
 }
 
+/// Points of the inputs.
+pub fn inputs() -> impl Iterator<Item = usize> {
+    up_to(POINTS[POINTS.len() - 1])
+}
+
 /// Points of the inputs for stages that take minutes on the largest.
-pub fn affordable() -> &'static [usize] {
-    let full = std::env::var_os("QSPLAT_BENCH_FULL").is_some_and(|value| value == "1");
-    if full { &POINTS } else { &POINTS[..2] }
+pub fn affordable() -> impl Iterator<Item = usize> {
+    up_to(AFFORDABLE)
+}
+
+/// The inputs up to what `QSPLAT_BENCH_MOST` says, without it up to `most`.
+fn up_to(most: usize) -> impl Iterator<Item = usize> {
+    let most = std::env::var("QSPLAT_BENCH_MOST").ok().and_then(|most| most.parse().ok()).unwrap_or(most);
+    POINTS.into_iter().filter(move |&points| points <= most)
+}
+
+/// Whether the command line's filter may mean a stage: it names it, or a part of it, or there
+/// is none. This only spares preparing inputs; the harness itself applies the filter.
+pub fn asked(stage: &str) -> bool {
+    let mut filters = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).peekable();
+    filters.peek().is_none() || filters.any(|filter| filter.contains(stage) || stage.contains(&filter))
 }
 
 /// The group of a stage, for what is done to so many elements.

@@ -2,8 +2,8 @@
 //!
 //! `scripts/bench` runs this and writes `docs/benchmarks.md`. Each group holds the stage and its
 //! floor, measured one after the other in one process with the same threads, so that the ratio
-//! of the two means the same on any machine. `QSPLAT_BENCH_FULL=1` adds the inputs of 4 million
-//! points to the stages that take minutes there.
+//! of the two means the same on any machine. `QSPLAT_BENCH_MOST` is the greatest number of points of
+//! an input; without it stages that take minutes on 4 million stop at 1 million.
 
 mod assets;
 mod cloud;
@@ -34,21 +34,34 @@ use qsplat::Result;
 
 use notes::Notes;
 
-fn run(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
-    read::bench(criterion)?;
-    neighbours::bench(criterion)?;
-    normals::bench(criterion)?;
-    fit::bench(criterion)?;
-    clip_fit::bench(criterion, notes)?;
-    sample::bench(criterion, notes)?;
-    bake::bench(criterion, notes)?;
-    encode::bench(criterion, notes)?;
-    decode::bench(criterion)?;
-    cpu_frame::bench(criterion, notes)?;
+/// Measures one stage on every input.
+type Bench = fn(&mut Criterion, &mut Notes) -> Result<()>;
+
+/// The stages in the order of the pipeline.
+const STAGES: &[(&str, Bench)] = &[
+    ("read", read::bench),
+    ("neighbours", neighbours::bench),
+    ("normals", normals::bench),
+    ("fit", fit::bench),
+    ("clip fit", clip_fit::bench),
+    ("sample", sample::bench),
+    ("bake", bake::bench),
+    ("encode", encode::bench),
+    ("decode", decode::bench),
+    ("cpu frame", cpu_frame::bench),
     #[cfg(feature = "gpu")]
-    wgpu_frame::bench(criterion, notes)?;
+    ("wgpu frame", wgpu_frame::bench),
+];
+
+fn run(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
     notes.threads(rayon::current_num_threads());
-    notes.save()
+    for (name, bench) in STAGES {
+        if harness::asked(name) {
+            bench(criterion, notes)?;
+            notes.save()?;
+        }
+    }
+    Ok(())
 }
 
 // A benchmark is a program of its own: it says what went wrong.

@@ -16,7 +16,7 @@ use crate::{cloud, floor};
 const STAGES: [&str; 2] = ["sample", "cover"];
 
 pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
-    for &points in affordable() {
+    for points in affordable() {
         let input = Input::Cloud(cloud::cloud(points));
         let rounding = |splat: &_, max_error| Quantizer::new(max_error).snap(splat).ok();
         let mut outcome = Ok(0);

@@ -6,7 +6,7 @@ use qsplat::Result;
 use qsplat::render::gpu::Gpu;
 use serde_json::json;
 
-use crate::harness::{POINTS, beside};
+use crate::harness::{beside, inputs};
 use crate::notes::Notes;
 use crate::{assets, frame};
 
@@ -22,7 +22,7 @@ pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
     };
     notes.adapter(&gpu.info().name);
     let settings = frame::settings();
-    for points in POINTS {
+    for points in inputs() {
         let asset = assets::asset(points)?;
         let (flat, camera) = (frame::flat(&asset), frame::camera(&asset));
         notes.add("wgpu frame", points, json!({ "splats": asset.splats.len() }));
