@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_normals::NormalSource;
 use crate::analyse::cloud_surface::cloud_surface;
-use crate::analyse::mesh_surface::{Features, Found, mesh_surface};
+use crate::analyse::mesh_surface::{Features, Found, cut_lines, mesh_surface};
 use crate::analyse::surface::Surface;
 use crate::error::{Error, Result};
 pub use crate::fit::clip::Clips;
@@ -17,6 +17,7 @@ pub use crate::fit::pose::Shapes;
 use crate::ingest::Input;
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::frame::Frame;
+use crate::model::mesh::Mesh;
 use crate::model::polyline::Polylines;
 use crate::model::splat::Splat;
 use crate::sample::budget::Budget;
@@ -319,13 +320,7 @@ fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> R
         Input::Mesh(mesh) => {
             let feature = 0.25 * diagonal;
             let longest = PIECE_SHARE * libm::cbrt(max_error * feature * feature);
-            let features = match &options.edges {
-                Edges::Auto => {
-                    Features::Sharp { degrees: options.edge_angle, shortest: SHORTEST_LINE * max_error }
-                }
-                Edges::None => Features::None,
-                Edges::Given(lines) => Features::Given(segments(lines, &mesh.vertices.frame)),
-            };
+            let features = features(mesh, &options.edges, options.edge_angle, max_error);
             let (surface, features) = mesh_surface(mesh, &features, longest, MOST_PIECES);
             Ok(Analysed { surface, features, ..Analysed::default() })
         }
@@ -340,6 +335,38 @@ fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> R
             Ok(Analysed { surface: found.surface, features, left_out: found.left_out })
         }
     }
+}
+
+/// Which edges of a mesh are feature edges.
+fn features(mesh: &Mesh, edges: &Edges, edge_angle: f64, max_error: f64) -> Features {
+    match edges {
+        Edges::Auto => Features::Sharp { degrees: edge_angle, shortest: SHORTEST_LINE * max_error },
+        Edges::None => Features::None,
+        Edges::Given(lines) => Features::Given(segments(lines, &mesh.vertices.frame)),
+    }
+}
+
+/// The lines along which a bake with these options cuts its splats, model units: feature lines,
+/// and a mesh's open borders, where splats are cut as well.
+///
+/// Found lines come as segments of two points, given ones as they are, whether the input has an
+/// edge there or not. `edge_angle` is in degrees; `max_error`, in model units, decides which
+/// found lines are too short to count. `None` where there are no lines: for a cloud without given
+/// ones, for a smooth closed mesh, and for [`Edges::None`].
+#[must_use]
+pub fn feature_lines(
+    input: &Input,
+    edges: &Edges,
+    edge_angle: f64,
+    max_error: f64,
+) -> Option<Vec<Vec<DVec3>>> {
+    let lines = match (input, edges) {
+        (_, Edges::None) => Vec::new(),
+        (Input::Mesh(mesh), _) => cut_lines(mesh, &features(mesh, edges, edge_angle, max_error)),
+        (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
+        (Input::Cloud(_), Edges::Auto) => Vec::new(),
+    };
+    (!lines.is_empty()).then_some(lines)
 }
 
 /// Lines in model units.

@@ -47,6 +47,25 @@ pub fn mesh_surface(mesh: &Mesh, features: &Features, longest: f64, most: usize)
     (split(&fine, &marked), found)
 }
 
+/// The lines that a mesh's surface is cut along, model units, each a segment of two points: its
+/// borders, where its faces do not join two by two, and its feature edges as they are found.
+///
+/// Given segments are returned as they are, beside the borders: whether the mesh has an edge
+/// there or not.
+#[must_use]
+pub fn cut_lines(mesh: &Mesh, features: &Features) -> Vec<Vec<DVec3>> {
+    let welded = weld(mesh);
+    let edges = Edges::of(&welded.triangles);
+    let (marked, given) = match features {
+        Features::Given(segments) => (vec![false; edges.edges.len()], segments.as_slice()),
+        Features::Sharp { .. } | Features::None => (mark(&welded, features).0, [].as_slice()),
+    };
+    let place = |v: u32| welded.positions[v as usize].as_dvec3();
+    let cut = edges.edges.iter().zip(&marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
+    let found = cut.map(|(edge, _)| edge.ends.map(place));
+    found.chain(given.iter().copied()).map(|segment| segment.to_vec()).collect()
+}
+
 fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
     let edges = Edges::of(&welded.triangles);
     let (marked, matched) = match features {

@@ -1,9 +1,11 @@
 //! Numbers that say how good a result is: every error and cost of a file against its input.
 
+pub mod edge;
 pub mod fit;
 pub mod image;
 pub mod measures;
 mod point_grid;
+pub mod surface;
 
 use glam::DVec3;
 
