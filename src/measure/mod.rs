@@ -1,11 +1,25 @@
 //! Numbers that say how good a result is: every error and cost of a file against its input.
 
+mod area;
+mod border;
+mod box_tree;
+mod cloud_fit;
 pub mod edge;
+mod feet;
 pub mod fit;
 pub mod image;
 pub mod measures;
+mod patch;
+mod patches;
+#[cfg(test)]
+mod planted;
 mod point_grid;
+mod roots;
+mod samples;
+mod segment;
+mod spread;
 pub mod surface;
+mod triangles;
 
 use glam::DVec3;
 

@@ -1,27 +1,195 @@
-//! `forward`, `backward`, `normal` and `overlap`.
+//! `forward`, `backward`, `normal` and `overlap`: the splats' surface against the input's.
+//!
+//! The splats' surface is what they are, quadrics over their clipped domains; nothing is
+//! tessellated. A mesh's surface is its triangles. A cloud's is what fits its points locally:
+//! around each point the least-squares quadric of its 20 nearest neighbours, as far to the side
+//! as the first ring of them.
+//!
+//! Samples are spread evenly by area, 250 thousand for either way, so that `rms` and `p99` are
+//! means over the area. `max` looks at more: at a mesh's vertices, and along the splats' rims and
+//! clip curves, where what stands out does so the farthest.
 
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::cloud_fit::CloudFit;
 use super::measures::{Angles, Distances};
+use super::patches::Patches;
+use super::samples::{self, MOST, Spot};
+use super::spread::{self, Sample};
+use super::triangles::Triangles;
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
-use crate::render::input::Model;
+use crate::model::cloud::Cloud;
+use crate::model::mesh::Mesh;
+use crate::render::input::{Model, Style};
+use crate::render::mesh_normals::MeshNormals;
+use crate::tolerance::DEFAULT_EDGE_ANGLE;
 
 /// How far the splats' surfaces and the input's lie from each other. Distances in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceErrors {
-    /// From samples of the input's surface to the union of the clipped splats.
+    /// From samples of the input's surface to the union of the clipped splats. Of a cloud, from
+    /// its points.
     pub forward: Distances,
     /// From samples of the clipped splats to the input's surface.
     pub backward: Distances,
-    /// Between the splats' normal fields and the input's normals at the same places.
+    /// Between the normal of the input's surface, as a picture of it is shaded by default, and the
+    /// splats' at the nearest place.
+    ///
+    /// Beside a feature edge the nearest place may lie on the splat across it. So where the nearest
+    /// normal is off by more than the default edge angle, all places count that are farther than
+    /// the nearest by at most the error bound, and of them the one whose normal agrees best. A
+    /// cloud's own normals count as they are, fitted ones for either sign.
     pub normal: Angles,
     /// Sum of the clipped splats' areas over the mesh's area; `None` for a cloud.
     pub overlap: Option<f64>,
 }
 
+/// Samples that one thread takes in a row: near to each other, each bounds the search of the next.
+const RUN: usize = 1024;
+
 /// Measures the surfaces against each other.
 ///
 /// # Errors
 /// [`Error::Usage`] if either has no surface, or they do not lie in one frame.
-pub fn surface(_asset: &Asset, _against: Model<'_>) -> Result<SurfaceErrors> {
-    Err(Error::Internal("not measured yet".into()))
+pub fn surface(asset: &Asset, against: Model<'_>) -> Result<SurfaceErrors> {
+    if asset.frame != against.cloud().frame {
+        return Err(Error::Usage(
+            "the file was baked from another input: the two do not lie at the same place".into(),
+        ));
+    }
+    let patches = Patches::new(asset);
+    if patches.area() <= 0.0 {
+        return Err(Error::Usage("the file has no splat of which anything is left to measure".into()));
+    }
+    match against {
+        Model::Mesh(mesh) => of_mesh(asset, &patches, mesh),
+        Model::Cloud(cloud) => of_cloud(asset, &patches, cloud),
+    }
 }
+
+fn of_mesh(asset: &Asset, patches: &Patches<'_>, mesh: &Mesh) -> Result<SurfaceErrors> {
+    let areas = samples::areas(mesh);
+    let area: f64 = areas.iter().sum();
+    if area.is_nan() || area <= 0.0 {
+        return Err(Error::Usage("the mesh to measure against has no area".into()));
+    }
+    let normals = MeshNormals::new(mesh, Style::default().normals);
+    let spots = samples::on_mesh(mesh, &areas);
+    let places = spots.iter().map(|spot: &Spot| Probe {
+        at: spot.at,
+        normal: normals.at(spot.triangle as usize, spot.weights),
+        signed: true,
+        weight: 1.0,
+    });
+    let mut probes: Vec<Probe> = places.collect();
+    probes.extend(corners(mesh, &areas).into_iter().map(|at| Probe {
+        at,
+        normal: DVec3::ZERO,
+        signed: true,
+        weight: 0.0,
+    }));
+    let (forward, normal) = forward(asset, patches, &probes);
+    let triangles = Triangles::new(mesh);
+    let backward = backward(patches, |at, last| triangles.distance(at, last));
+    Ok(SurfaceErrors { forward, backward, normal, overlap: Some(patches.area() / area) })
+}
+
+fn of_cloud(asset: &Asset, patches: &Patches<'_>, cloud: &Cloud) -> Result<SurfaceErrors> {
+    let fit = CloudFit::new(&cloud.positions)?;
+    let points: Vec<u32> = (0..cloud.positions.len() as u32).collect();
+    let probe = |point: u32| {
+        let given = cloud.normals.get(point as usize).and_then(|normal| normal.as_dvec3().try_normalize());
+        Probe {
+            at: cloud.positions[point as usize].as_dvec3(),
+            normal: given.unwrap_or_else(|| fit.normal(point as usize)),
+            signed: given.is_some(),
+            weight: 1.0,
+        }
+    };
+    let probes: Vec<Probe> = samples::thinned(&points, MOST_POINTS).into_par_iter().map(probe).collect();
+    let (forward, normal) = forward(asset, patches, &probes);
+    let backward = backward(patches, |at, _| Some(fit.distance(at)));
+    Ok(SurfaceErrors { forward, backward, normal, overlap: None })
+}
+
+/// Points of a cloud, or vertices of a mesh, that are looked at: all but of very large inputs,
+/// whose points are then chosen evenly in the order of the file.
+const MOST_POINTS: usize = 4 * MOST;
+
+/// Corners of the triangles that have an area.
+fn corners(mesh: &Mesh, areas: &[f64]) -> Vec<DVec3> {
+    let mut used = vec![false; mesh.vertices.positions.len()];
+    for (corners, _) in mesh.triangles.iter().zip(areas).filter(|(_, area)| **area > 0.0) {
+        corners.iter().for_each(|&corner| used[corner as usize] = true);
+    }
+    let positions = mesh.vertices.positions.iter().zip(used);
+    let corners: Vec<Vec3> = positions.filter(|(_, used)| *used).map(|(position, _)| *position).collect();
+    samples::thinned(&corners, MOST_POINTS).into_iter().map(Vec3::as_dvec3).collect()
+}
+
+/// A place of the input's surface.
+#[derive(Clone, Copy, Debug)]
+struct Probe {
+    at: DVec3,
+    /// Zero where it is not known.
+    normal: DVec3,
+    /// Whether the normal's sign means anything.
+    signed: bool,
+    weight: f64,
+}
+
+impl Probe {
+    /// Angle to a unit normal, degrees.
+    fn angle(&self, normal: DVec3) -> f64 {
+        let cosine = if self.signed { self.normal.dot(normal) } else { self.normal.dot(normal).abs() };
+        libm::atan2(self.normal.cross(normal).length(), cosine).to_degrees()
+    }
+}
+
+fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> (Distances, Angles) {
+    let measured: Vec<(Sample, Option<Sample>)> = probes
+        .par_chunks(RUN)
+        .flat_map_iter(|run| {
+            let mut last = None;
+            run.iter().filter_map(move |probe| {
+                let nearest = patches.nearest(probe.at, &mut last)?;
+                let turned = probe.weight > 0.0 && probe.normal != DVec3::ZERO;
+                let angle = turned.then(|| {
+                    let angle = probe.angle(patches.normal(&nearest));
+                    if angle <= DEFAULT_EDGE_ANGLE {
+                        return angle;
+                    }
+                    let near = patches.within(probe.at, nearest.distance + asset.max_error);
+                    near.iter().map(|place| probe.angle(patches.normal(place))).fold(angle, f64::min)
+                });
+                Some(((nearest.distance, probe.weight), angle.map(|angle| (angle, probe.weight))))
+            })
+        })
+        .collect();
+    let distances: Vec<Sample> = measured.iter().map(|sample| sample.0).collect();
+    let angles: Vec<Sample> = measured.iter().filter_map(|sample| sample.1).collect();
+    (spread::distances(&distances), spread::angles(&angles))
+}
+
+/// From the splats to whatever gives distances; it is handed the place before and its distance.
+fn backward(
+    patches: &Patches<'_>,
+    distance: impl Fn(DVec3, &mut Option<(DVec3, f64)>) -> Option<f64> + Sync,
+) -> Distances {
+    let places = samples::on_patches(&patches.patches);
+    let measured: Vec<Sample> = places
+        .par_iter()
+        .flat_map_iter(|places| {
+            let mut last = None;
+            let distance = &distance;
+            places.iter().filter_map(move |&(at, weight)| Some((distance(at, &mut last)?, weight)))
+        })
+        .collect();
+    spread::distances(&measured)
+}
+
+#[cfg(test)]
+#[path = "surface_tests.rs"]
+mod tests;

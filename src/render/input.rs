@@ -7,16 +7,15 @@ use super::constants::{self, MATTE};
 use super::cpu;
 use super::eye::{Eye, Ray};
 use super::intersect::{self, LocalRay};
+use super::mesh_normals::MeshNormals;
 use super::picture::{Picture, Visibility};
 use super::project::{self, Bound, Prism};
 use super::settings::Settings;
 use super::shade;
-use super::smooth;
 use super::tiles::{Hit, Look, Mix, Scene};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 use crate::model::mesh::Mesh;
-use crate::tolerance::DEFAULT_EDGE_ANGLE;
 
 /// What can be drawn besides an asset.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +39,7 @@ pub struct Style {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normals {
     /// The file's where a triangle has three sound ones, else as [`Normals::Crease`] at
-    /// [`DEFAULT_EDGE_ANGLE`].
+    /// [`DEFAULT_EDGE_ANGLE`](crate::tolerance::DEFAULT_EDGE_ANGLE).
     Given,
     /// The mean over the faces around a corner that turn from this one by at most so many
     /// degrees, weighted by their angle there.
@@ -121,7 +120,7 @@ fn color(cloud: &Cloud, point: usize) -> Vec3 {
 }
 
 /// A point's unit normal, if the file gives a sound one.
-fn given_normal(cloud: &Cloud, point: usize) -> Option<DVec3> {
+pub(super) fn given_normal(cloud: &Cloud, point: usize) -> Option<DVec3> {
     cloud.normals.get(point)?.as_dvec3().try_normalize()
 }
 
@@ -131,21 +130,13 @@ struct Facets<'a> {
     eye: &'a Eye,
     /// Vertices in view coordinates.
     places: Vec<DVec3>,
-    /// Corner normals in model coordinates; empty when the file's or the faces' serve.
-    corners: Vec<[Vec3; 3]>,
-    normals: Normals,
+    normals: MeshNormals<'a>,
 }
 
 impl<'a> Facets<'a> {
     fn new(mesh: &'a Mesh, eye: &'a Eye, normals: Normals) -> Self {
         let places = mesh.vertices.positions.iter().map(|p| eye.to_view(p.as_dvec3())).collect();
-        let corners = match normals {
-            Normals::Given if !mesh.vertices.normals.is_empty() => Vec::new(),
-            Normals::Given => smooth::corner_normals(mesh, DEFAULT_EDGE_ANGLE),
-            Normals::Crease(degrees) => smooth::corner_normals(mesh, degrees),
-            Normals::Flat => Vec::new(),
-        };
-        Self { mesh, eye, places, corners, normals }
+        Self { mesh, eye, places, normals: MeshNormals::new(mesh, normals) }
     }
 
     fn corners(&self, item: usize) -> [DVec3; 3] {
@@ -154,14 +145,7 @@ impl<'a> Facets<'a> {
 
     /// The smooth normals of a triangle's corners, in view coordinates.
     fn smooth(&self, item: usize) -> Option<[DVec3; 3]> {
-        if let Some(corners) = self.corners.get(item) {
-            return Some(corners.map(|n| self.eye.turn(n.as_dvec3())));
-        }
-        if self.normals == Normals::Flat {
-            return None;
-        }
-        let [a, b, c] = self.mesh.triangles[item].map(|v| given_normal(&self.mesh.vertices, v as usize));
-        Some([a?, b?, c?].map(|n| self.eye.turn(n)))
+        Some(self.normals.corners(item)?.map(|normal| self.eye.turn(normal)))
     }
 }
 

@@ -21,6 +21,7 @@ mod eye;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod input;
+pub mod mesh_normals;
 pub mod picture;
 pub mod settings;
 

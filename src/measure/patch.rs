@@ -1,0 +1,123 @@
+//! A splat as a surface: the quadric over its clipped domain.
+
+use glam::{DVec2, DVec3};
+
+use super::area::area;
+use super::border::border;
+use super::feet;
+use super::segment::Segment;
+use crate::model::clip_curve::Conic;
+use crate::model::splat::Splat;
+
+/// A splat, its clip curves and its border, ready for many questions.
+#[derive(Clone, Debug)]
+pub(super) struct Patch<'a> {
+    pub(super) splat: &'a Splat,
+    conics: Vec<Conic>,
+    /// The border; empty if nothing is left of the splat.
+    pub(super) border: Vec<Segment>,
+    /// Area in squared model units.
+    pub(super) area: f64,
+    /// Corners of the box around the patch in splat coordinates.
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+}
+
+/// A place of a patch and its distance from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Foot {
+    pub(super) uv: DVec2,
+    pub(super) distance: f64,
+}
+
+impl<'a> Patch<'a> {
+    /// Takes a splat's border apart.
+    pub(super) fn new(splat: &'a Splat) -> Self {
+        let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+        let pieces = border(splat, &conics);
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for piece in &pieces {
+            let corner = if piece.conic.rho > 0.0 { piece.conic.p2 } else { piece.conic.p1 };
+            for corner in [piece.conic.p1, corner, piece.conic.p3] {
+                (low, high) = (low.min(corner), high.max(corner));
+            }
+        }
+        (low, high) = (low.max(-splat.radii), high.min(splat.radii));
+        let (below, above) = heights(splat, low, high);
+        Self {
+            splat,
+            area: area(splat, &pieces),
+            border: pieces.iter().map(|piece| Segment::new(splat, piece)).collect(),
+            conics,
+            low: low.extend(below),
+            high: high.extend(above),
+        }
+    }
+
+    /// Whether a place lies in the ellipse and is not cut away.
+    pub(super) fn covers(&self, uv: DVec2) -> bool {
+        self.splat.ellipse(uv) <= 1.0 && !self.conics.iter().any(|conic| conic.cuts(uv))
+    }
+
+    /// A box around the patch in model units; `None` if nothing is left of it.
+    pub(super) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        if self.border.is_empty() {
+            return None;
+        }
+        let axes = self.splat.axes;
+        let middle = self.splat.to_model(0.5 * (self.low + self.high));
+        let half = 0.5 * (self.high - self.low);
+        let across = axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
+        Some((middle - across, middle + across))
+    }
+
+    /// The place nearest to a point of model space, if it is nearer than `within`.
+    ///
+    /// It is a foot of a normal inside the domain or lies on the border.
+    pub(super) fn nearest(&self, point: DVec3, within: f64) -> Option<Foot> {
+        let p = self.splat.to_local(point);
+        let outside = (self.low - p).max(p - self.high).max(DVec3::ZERO);
+        if self.border.is_empty() || outside.length() >= within {
+            return None;
+        }
+        let curvature = self.splat.curvature;
+        let mut best = Foot { uv: DVec2::ZERO, distance: within };
+        for uv in feet::nearest(p, curvature) {
+            if self.covers(uv) {
+                let foot = self.foot(p, uv);
+                return (foot.distance < within).then_some(foot);
+            }
+        }
+        for segment in &self.border {
+            if segment.least(p) < best.distance {
+                let (uv, distance) = segment.nearest(curvature, p);
+                if distance < best.distance {
+                    best = Foot { uv, distance };
+                }
+            }
+        }
+        for uv in feet::others(p, curvature, best.distance) {
+            let foot = self.foot(p, uv);
+            if foot.distance < best.distance && self.covers(uv) {
+                best = foot;
+            }
+        }
+        (best.distance < within).then_some(best)
+    }
+
+    fn foot(&self, p: DVec3, uv: DVec2) -> Foot {
+        Foot { uv, distance: uv.extend(self.splat.height(uv)).distance(p) }
+    }
+}
+
+/// Least and greatest height of the quadric over a box.
+fn heights(splat: &Splat, low: DVec2, high: DVec2) -> (f64, f64) {
+    let most = low.abs().max(high.abs());
+    let least = DVec2::ZERO.clamp(low.min(high), high.max(low)).abs();
+    let (near, far) = (splat.curvature * least * least, splat.curvature * most * most);
+    (near.min(far).element_sum(), near.max(far).element_sum())
+}
+
+#[cfg(test)]
+#[path = "patch_tests.rs"]
+mod tests;
