@@ -7,6 +7,7 @@ the notes that the benchmarks left in TARGET/tmp/bench-notes.json.
 
 import json
 import math
+import os
 import pathlib
 import sys
 
@@ -75,7 +76,8 @@ def main():
         "Times alone mean little on a shared machine; ratios mean more. The input is a generated "
         "head-like surface without an edge, scanned evenly; settings are the program's defaults (0.1 % "
         "of the diagonal, effort 5). *Growth* is the exponent of the time between the smallest and the "
-        "largest input: 1 is linear.\n"
+        "largest input: 1 is linear; – was not measured. Over the quarter of an hour before this was "
+        f"written, {os.getloadavg()[2]:.1f} threads on the machine wanted its {os.cpu_count()} processors.\n"
     )
     print("| stage | floor | 100 thousand | 1 million | 4 million | growth |")
     print("|---|---|---|---|---|---|")

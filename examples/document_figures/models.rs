@@ -25,15 +25,13 @@ impl Model {
     }
 }
 
-/// CAD parts: the fixtures', and those of the user's folder.
+/// CAD parts: the fixtures', and the document's Fandisk from the user's folder.
 ///
 /// # Errors
 /// As [`read`].
 pub fn parts() -> Result<Vec<Model>> {
     let mut parts = vec![fixture("capped-cylinder.ply")?, fixture("plate.ply")?, fixture("part.ply")?];
-    for file in ["fandisk.obj", "abc-00000049.obj"] {
-        parts.extend(external(file)?);
-    }
+    parts.extend(external("fandisk.obj")?);
     Ok(parts)
 }
 
