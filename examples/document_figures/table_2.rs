@@ -40,8 +40,8 @@ pub fn make(page: &mut Page) -> Result<()> {
     document(page)?;
     page.say(
         "Ours: each part baked twice under the same error bound, once with chords alone and once with all \
-         cuts. The bound holds cuts and surfaces alike; where chords cannot follow an edge that near, \
-         splats become smaller and more. *Edge* is the measured distance between lines and cuts, both \
+         cuts. Where chords cannot follow an edge as near as the bound asks, splats become smaller and \
+         more. *Edge* is the measured distance between lines and cuts, both \
          ways, root mean square. *Share* is bytes of the coded file, with all cuts over chords alone: at \
          the same bound; with plain numbers, as T counts; and at the same measured edge error, the bytes \
          of the chords read off between their bakes. A bound finer than a model's own facets fits the \
