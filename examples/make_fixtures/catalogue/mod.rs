@@ -7,6 +7,7 @@
 mod curve;
 mod geodesic;
 mod glb;
+mod head;
 mod obj;
 mod planar;
 mod ply;
