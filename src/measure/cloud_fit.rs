@@ -184,7 +184,9 @@ mod tests {
             let on = on.unwrap();
             let p = points[on].as_dvec3();
             let normal = DVec3::new(-0.8 * p.x - 0.1, 0.4 * p.y, 1.0).normalize();
-            assert!(fit.normal(on).dot(normal).abs() > 1.0 - 1e-9);
+            // Seen from the plane of a lopsided neighbourhood, tilted by about curvature times radius,
+            // the bowl has cubic terms: of the order of (0.8 * 0.06)^3 of slope, 0.006 degrees.
+            assert!(fit.normal(on).cross(normal).length() < 0.02_f64.to_radians());
         }
         // Past the border less what a ring reaches: the lattice's step or its diagonal.
         for past in [0.1, 0.3] {

@@ -201,8 +201,7 @@ impl Measures {
             ("backward max", self.backward.max, BACKWARD_BUDGETS * self.budget),
         ];
         for (name, value, limit) in distances {
-            // Written so that a NaN is a fault.
-            if !(value <= limit) {
+            if value.is_nan() || value > limit {
                 faults.push(format!("{name} is {value:.3e} of the diagonal, more than {limit:.3e}"));
             }
         }

@@ -13,6 +13,8 @@ pub mod holes;
 pub mod image;
 pub mod measures;
 mod patch;
+#[cfg(test)]
+mod patch_tests;
 mod patches;
 #[cfg(test)]
 mod planted;

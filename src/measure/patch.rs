@@ -117,7 +117,3 @@ fn heights(splat: &Splat, low: DVec2, high: DVec2) -> (f64, f64) {
     let (near, far) = (splat.curvature * least * least, splat.curvature * most * most);
     (near.min(far).element_sum(), near.max(far).element_sum())
 }
-
-#[cfg(test)]
-#[path = "patch_tests.rs"]
-mod tests;

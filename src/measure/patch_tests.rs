@@ -1,12 +1,13 @@
 //! Nearest places and areas of patches against dense sampling.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::*;
+use super::patch::Patch;
 use crate::model::clip_curve::ClipCurve;
+use crate::model::splat::Splat;
 
 /// A sequence of numbers in `[0, 1)` that looks random (SplitMix64).
 struct Dice(u64);
@@ -111,7 +112,7 @@ fn around(splat: &Splat, uv: DVec2, share: f64, count: u32) -> impl Iterator<Ite
 fn no_sample_is_nearer_than_the_nearest_place() {
     let mut dice = Dice(7);
     let (mut worst, mut least, mut empty) = (0.0_f64, 0.0_f64, 0);
-    for _ in 0..600 {
+    for _ in 0..300 {
         let splat = any_splat(&mut dice);
         let patch = Patch::new(&splat);
         let places = dense(&splat);
@@ -128,7 +129,7 @@ fn no_sample_is_nearer_than_the_nearest_place() {
             continue;
         }
         let samples: Vec<DVec3> = places.iter().map(|&uv| splat.surface_point(uv)).collect();
-        for _ in 0..30 {
+        for _ in 0..20 {
             let point = any_point(&mut dice, &splat);
             let foot = patch.nearest(point, f64::INFINITY).unwrap();
             let brute = samples.iter().map(|x| x.distance(point)).fold(f64::INFINITY, f64::min);

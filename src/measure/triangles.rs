@@ -74,7 +74,6 @@ mod tests {
             let (exact, found) = (planted(corners, point), to_triangle(corners, point));
             worst = worst.max((found - exact).abs() / (1.0 + exact));
         }
-        eprintln!("triangles: {worst:e}");
         assert!(worst < 1e-7, "{worst:e}");
     }
 }

@@ -68,7 +68,8 @@ fn measures_survive_their_json() {
 #[test]
 fn each_broken_promise_is_one_fault() {
     assert_eq!(sound().faults(), Vec::<String>::new());
-    let breaks: [(&str, fn(&mut Measures)); 6] = [
+    type Plant = fn(&mut Measures);
+    let breaks: [(&str, Plant); 6] = [
         ("fit max", |m| m.fit.max = 1.1e-3),
         ("fit max", |m| m.fit.max = f64::NAN),
         ("backward max", |m| m.backward.max = 2.1e-3),

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Checks `qsplat measure` against an independent implementation.
+
+usage: check_measure.py EXPORTED.ply INPUT MEASURED.json
+
+EXPORTED.ply is what `qsplat export FILE -o EXPORTED.ply` wrote, INPUT the mesh that FILE was baked
+from, MEASURED.json what `qsplat measure` printed with --json. Both surfaces are sampled densely and
+at random, by area and at their vertices, and each sample is compared with the other surface by
+point-cloud-utils (Embree's exact closest points). Prints rms and max, forward and backward, as
+fractions of the diagonal beside those of MEASURED.json, with their ratio. Exits with 1 if any
+differs by more than 5 %, apart from what is below the export's own tolerance, a tenth of the
+error budget; with 2 if the arguments are wrong.
+
+Needs: pip install numpy trimesh point-cloud-utils
+"""
+
+import json
+import re
+import sys
+
+import numpy as np
+import point_cloud_utils as pcu
+import trimesh
+
+SAMPLES = 1_000_000  # each way: rms within a few thousandths
+MOST_OFF = 0.05
+BATCH = 200_000
+
+
+def load(path):
+    mesh = trimesh.load(path, process=False, force="mesh")
+    return np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64)
+
+
+def budget(path):
+    """The error budget that the export's header names, in the input's units."""
+    with open(path, "rb") as file:
+        head = file.read(1000).split(b"end_header")[0].decode()
+    return float(re.search(r"error budget (\S+)", head).group(1))
+
+
+def samples(vertices, faces, seed):
+    """Random places by area; each face's corners."""
+    rng = np.random.default_rng(seed)
+    a, b, c = (vertices[faces[:, n]] for n in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    which = rng.choice(len(faces), SAMPLES, p=areas / areas.sum())
+    u, v = rng.random((2, SAMPLES, 1))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    inner = a[which] + u * (b - a)[which] + v * (c - a)[which]
+    return inner, vertices[np.unique(faces)]
+
+
+def distances(points, vertices, faces):
+    found = []
+    for start in range(0, len(points), BATCH):
+        # 32 bits are what Embree searches in: the closest point is taken again in 64.
+        part = points[start : start + BATCH]
+        _, face, weights = pcu.closest_points_on_mesh(
+            part.astype(np.float32), vertices.astype(np.float32), faces.astype(np.int32)
+        )
+        corners = vertices[faces[face]]
+        found.append(trimesh.triangles.closest_point(corners, part) - part)
+    return np.linalg.norm(np.concatenate(found), axis=1)
+
+
+def greatest(points, found, vertices, faces):
+    """The greatest distance; each that comes into question is taken again without a search.
+
+    Now and then the 32-bit search returns a face ten times as far as the nearest.
+    """
+    corners = vertices[faces]
+    middles = corners.mean(axis=1)
+    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+    most = 0.0
+    for n in np.argsort(-found):
+        if found[n] <= most:
+            return most
+        point = points[n]
+        near = corners[np.linalg.norm(middles - point, axis=1) - radii <= found[n] * 1.001]
+        exact = trimesh.triangles.closest_point(near, np.broadcast_to(point, (len(near), 3)))
+        most = max(most, np.nanmin(np.linalg.norm(exact - point, axis=1)))
+    return most
+
+
+def one_way(source, target, seed):
+    inner, corners = samples(*source, seed)
+    along, ends = distances(inner, *target), distances(corners, *target)
+    most = max(greatest(inner, along, *target), greatest(corners, ends, *target))
+    return {"rms": float(np.sqrt(np.mean(along**2))), "max": float(most)}
+
+
+def main():
+    if len(sys.argv) != 4:
+        print(__doc__, file=sys.stderr)
+        return 2
+    exported, given = load(sys.argv[1]), load(sys.argv[2])
+    with open(sys.argv[3], encoding="utf-8") as file:
+        measured = json.load(file)
+    used = given[0][np.unique(given[1])]
+    origin = (used.max(axis=0) + used.min(axis=0)) / 2
+    diagonal = np.linalg.norm(given[0].max(axis=0) - given[0].min(axis=0))
+    # Around the origin and of size 1, so that 32 bits go as far as they can.
+    exported, given = [((v - origin) / diagonal, f) for v, f in (exported, given)]
+    slack = 0.1 * budget(sys.argv[1]) / diagonal
+    found = {"forward": one_way(given, exported, 1), "backward": one_way(exported, given, 2)}
+    failed = False
+    print(f"{'':14}{'measured':>14}{'here':>14}{'ratio':>10}")
+    for way, numbers in found.items():
+        for name, here in numbers.items():
+            there = measured[way][name]
+            off = abs(there - here) > MOST_OFF * here
+            # The tessellation itself may be off by this much.
+            off = off and abs(there - here) > slack * (0.1 if name == "rms" else 1.0)
+            failed |= off
+            ratio = there / here if here > 0 else float("nan")
+            print(f"{way + ' ' + name:14}{there:14.4e}{here:14.4e}{ratio:10.4f}{'  OFF' if off else ''}")
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
