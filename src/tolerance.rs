@@ -15,6 +15,10 @@ pub const FIT_SHARE: f64 = 0.92;
 /// share is only how coarse the grids may be; it overlaps with that of the fit.
 pub const QUANTIZE_SHARE: f64 = 0.6;
 
+/// The same for a splat that is rounded with its clip curves: their bound is proved for small
+/// moves. (The bake rounds first and cuts then.)
+pub const CLIPPED_QUANTIZE_SHARE: f64 = 0.15;
+
 /// Share of the budget that the fit may use at points on feature lines.
 pub const LINE_FIT_SHARE: f64 = 0.3;
 

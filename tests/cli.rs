@@ -356,7 +356,7 @@ fn a_sweep_keeps_its_numbers_and_its_failures() {
         let fixed = ["report", "-o", &into, "--efforts", "1", "--frames", "1", "--progress", "json"];
         qsplat(&[&fixed, inputs, more].concat())
     };
-    let output = sweep(&[&sphere, "no-such.ply"], &["--max-errors", "2%,1%", "--jobs", "2"]);
+    let output = sweep(&[&sphere, "no-such.ply"], &["--max-errors", "2%,0.5%", "--jobs", "2"]);
     assert_eq!(code(&output), 1, "a failed input is a failed check\n{}", err(&output));
     assert!(out(&output).contains("4 bakes, 1 failed"), "{}", out(&output));
     let (jobs, lines) = err(&output)
@@ -372,7 +372,11 @@ fn a_sweep_keeps_its_numbers_and_its_failures() {
     assert!(lost.failure.as_ref().unwrap().contains("no-such.ply") && lost.cases.is_empty());
     let settings: Vec<(&str, &str)> =
         sound.cases.iter().map(|c| (c.variant.as_str(), c.max_error.as_str())).collect();
-    assert_eq!(settings, [("all", "2%"), ("all", "1%"), ("flat", "2%"), ("flat", "1%")], "nothing is cut");
+    assert_eq!(
+        settings,
+        [("all", "2%"), ("all", "0.5%"), ("flat", "2%"), ("flat", "0.5%")],
+        "nothing is cut"
+    );
     let costs: Vec<_> =
         sound.cases.iter().map(|c| c.outcome.as_ref().unwrap().measures.cost.clone()).collect();
     assert!(costs[0].splats < costs[1].splats && costs[1].splats < costs[3].splats, "{costs:?}");

@@ -334,7 +334,7 @@ mod tests {
             "a whole square face"
         );
         let blunt = points(&[(-0.6, 0.0), (0.6, 0.0), (0.0, 0.05)]);
-        assert_eq!(chords(&blunt, true), Some(3), "a triangle's corners count however blunt");
+        assert_eq!(chords(&blunt, true), Some(5), "moved outward, its two sharp tips end in a side each");
         let hole: Vec<DVec2> = arc(1.2, DVec2::new(0.2, 1.4), -2.6, -0.5).into_iter().rev().collect();
         assert_eq!(chords(&hole, false), None, "the outside of a circle");
     }

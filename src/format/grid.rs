@@ -46,7 +46,7 @@ pub const RADIUS_CODES: u16 = 1024;
 const RADIUS_LEAST: i32 = -4;
 
 /// The finest fineness: all steps but the clip's are divided by `2^fineness`.
-pub const MAX_FINENESS: u8 = 12;
+pub const MAX_FINENESS: u8 = 16;
 
 /// `|P2 - (P1+P3)/2|` is at most this many clip steps along each axis.
 pub const CONTROL_LIMIT: u64 = 1 << 40;

@@ -5,9 +5,9 @@
 //!
 //! - **Height.** Let `X` be a point over the splat's domain at distance `d <= FIT_SHARE E`
 //!   from it along `k`. Its distance along the rounded `k'` to the rounded quadric is at most
-//!   `d + QUANTIZE_SHARE E`. Nothing is left to chance: the bound of `bound` is worked
-//!   out for each splat, and where it does not hold, all steps of that splat are halved (its
-//!   *fineness*) until it does.
+//!   `d + QUANTIZE_SHARE E` (`CLIPPED_QUANTIZE_SHARE` if clip curves are rounded with it).
+//!   Nothing is left to chance: the bound of `bound` is worked out for each splat, and where it
+//!   does not hold, all steps of that splat are halved (its *fineness*) until it does.
 //! - **Domain.** Every such `X` on the quadric lies in the rounded ellipse, so that rounding
 //!   opens no hole.
 //! - **Clip.** Every point of a clip curve moves by at most `CLIP_QUANTIZE_SHARE E` in the
@@ -33,7 +33,7 @@ use super::place::Nudge;
 use super::record::Record;
 use crate::error::Result;
 use crate::model::splat::Splat;
-use crate::tolerance::{CLIP_QUANTIZE_SHARE, QUANTIZE_SHARE};
+use crate::tolerance::{CLIP_QUANTIZE_SHARE, CLIPPED_QUANTIZE_SHARE, QUANTIZE_SHARE};
 
 /// A splat this close to its record, in units of its finest step, is the record itself.
 const EXACT: f64 = 1.0 / 1024.0;
@@ -46,6 +46,10 @@ const GROWTH_ROUNDS: usize = 100;
 
 /// Beyond this many shares another way of rounding no longer helps; finer steps must.
 const HOPELESS: f64 = 4.0;
+
+/// The least fineness of a splat that is rounded together with its clip curves: their bound is
+/// proved to the first order of the steps, and at a quarter of them the rest is small.
+const CLIPPED_FINENESS: u8 = 2;
 
 /// What came of one way of rounding.
 enum Attempt {
@@ -91,7 +95,8 @@ impl Quantizer {
         if let Some(record) = self.exact(&from)? {
             return Ok(record);
         }
-        for fineness in 0..=MAX_FINENESS {
+        let coarsest = if from.clips.is_empty() { 0 } else { CLIPPED_FINENESS };
+        for fineness in coarsest..=MAX_FINENESS {
             if let Some(record) = self.rounded(&from, fineness)? {
                 // A rarer axis or fineness may have a plainer spelling.
                 let plain = record.fineness == 0 && record.turn == 0;
@@ -204,7 +209,8 @@ impl Quantizer {
     /// How much of its shares of the budget a rounded splat takes: it holds up to 1.
     fn shares(&self, moved: &Moved, clipped: bool) -> f64 {
         let budget = self.grids.budget;
-        let height = moved.height(budget) / (QUANTIZE_SHARE * budget);
+        let share = if clipped { CLIPPED_QUANTIZE_SHARE } else { QUANTIZE_SHARE };
+        let height = moved.height(budget) / (share * budget);
         let clip = moved.bend_of_plane() / (budget * CLIP_QUANTIZE_SHARE - self.clip_rounding());
         if clipped { height.max(clip) } else { height }
     }
