@@ -4,6 +4,7 @@ pub mod align;
 mod area;
 mod border;
 mod box_tree;
+mod climb;
 mod cloud_fit;
 pub mod cost;
 pub mod edge;

@@ -23,6 +23,9 @@ pub(super) struct Patch<'a> {
     pub(super) high: DVec3,
 }
 
+/// Factor that keeps a place of the rim inside the domain when it is rounded.
+const ON_RIM: f64 = 1.0 - 1e-12;
+
 /// A place of a patch and its distance from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Foot {
@@ -57,6 +60,20 @@ impl<'a> Patch<'a> {
     /// Whether a place lies in the ellipse and is not cut away.
     pub(super) fn covers(&self, uv: DVec2) -> bool {
         self.splat.ellipse(uv) <= 1.0 && !self.conics.iter().any(|conic| conic.cuts(uv))
+    }
+
+    /// Places of the patch about a step from one of its own.
+    ///
+    /// Steps over the rim end on it: what stands out does so the farthest there.
+    pub(super) fn around(&self, uv: DVec2, step: f64) -> impl Iterator<Item = DVec2> {
+        let side = [-1.0, 0.0, 1.0];
+        let ways = side.into_iter().flat_map(move |x| side.into_iter().map(move |y| DVec2::new(x, y)));
+        ways.filter_map(move |way| {
+            let to = uv + step * way;
+            let beyond = self.splat.ellipse(to).sqrt();
+            let to = if beyond > 1.0 { to * (ON_RIM / beyond) } else { to };
+            (to != uv && self.covers(to)).then_some(to)
+        })
     }
 
     /// A box around the patch in model units; `None` if nothing is left of it.

@@ -6,12 +6,13 @@
 //! as the first ring of them.
 //!
 //! Samples are spread evenly by area, 250 thousand for either way, so that `rms` and `p99` are
-//! means over the area. `max` looks at more: at a mesh's vertices, and along the splats' rims and
-//! clip curves, where what stands out does so the farthest.
+//! means over the area. `max` looks at more: at a mesh's vertices, along the splats' rims and
+//! clip curves, where what stands out does so the farthest, and uphill from the worst samples.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::climb;
 use super::cloud_fit::CloudFit;
 use super::measures::{Angles, Distances};
 use super::patches::Patches;
@@ -90,8 +91,12 @@ fn of_mesh(asset: &Asset, patches: &Patches<'_>, mesh: &Mesh) -> Result<SurfaceE
         signed: true,
         weight: 0.0,
     }));
-    let (forward, normal) = forward(asset, patches, &probes);
+    let (mut forward, normal, worst) = forward(asset, patches, &probes);
     let triangles = Triangles::new(mesh);
+    let step = (area / MOST as f64).sqrt();
+    let around = |at, step| climb::around(at, step).filter_map(|place| triangles.closest(place));
+    let distance = |at| patches.nearest(at, &mut None).map(|nearest| nearest.distance);
+    forward.max = forward.max.max(climb::highest(&worst, step, around, distance));
     let backward = backward(patches, |at, last| triangles.distance(at, last));
     Ok(SurfaceErrors { forward, backward, normal, overlap: Some(patches.area() / area) })
 }
@@ -109,7 +114,7 @@ fn of_cloud(asset: &Asset, patches: &Patches<'_>, cloud: &Cloud) -> Result<Surfa
         }
     };
     let probes: Vec<Probe> = samples::thinned(&points, MOST_POINTS).into_par_iter().map(probe).collect();
-    let (forward, normal) = forward(asset, patches, &probes);
+    let (forward, normal, _) = forward(asset, patches, &probes);
     let backward = backward(patches, |at, _| Some(fit.distance(at)));
     Ok(SurfaceErrors { forward, backward, normal, overlap: None })
 }
@@ -148,8 +153,9 @@ impl Probe {
     }
 }
 
-fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> (Distances, Angles) {
-    let measured: Vec<(Sample, Option<Sample>)> = probes
+/// Distances and angles of the probes, and the worst of them with their distances.
+fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> (Distances, Angles, Vec<(DVec3, f64)>) {
+    let measured: Vec<(DVec3, Sample, Option<Sample>)> = probes
         .par_chunks(RUN)
         .flat_map_iter(|run| {
             let mut last = None;
@@ -164,13 +170,17 @@ fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> (Distances
                     let near = patches.within(probe.at, nearest.distance + asset.max_error);
                     near.iter().map(|place| probe.angle(patches.normal(place))).fold(angle, f64::min)
                 });
-                Some(((nearest.distance, probe.weight), angle.map(|angle| (angle, probe.weight))))
+                let angle = angle.map(|angle| (angle, probe.weight));
+                Some((probe.at, (nearest.distance, probe.weight), angle))
             })
         })
         .collect();
-    let distances: Vec<Sample> = measured.iter().map(|sample| sample.0).collect();
-    let angles: Vec<Sample> = measured.iter().filter_map(|sample| sample.1).collect();
-    (spread::distances(&distances), spread::angles(&angles))
+    let distances: Vec<Sample> = measured.iter().map(|sample| sample.1).collect();
+    let angles: Vec<Sample> = measured.iter().filter_map(|sample| sample.2).collect();
+    let samples: Vec<(DVec3, f64)> = measured.iter().map(|sample| (sample.0, sample.1.0)).collect();
+    let starts = climb::starts(&samples, (patches.area() / MOST as f64).sqrt());
+    let worst = starts.into_iter().map(|n| samples[n]).collect();
+    (spread::distances(&distances), spread::angles(&angles), worst)
 }
 
 /// From the splats to whatever gives distances; it is handed the place before and its distance.
@@ -179,15 +189,33 @@ fn backward(
     distance: impl Fn(DVec3, &mut Option<(DVec3, f64)>) -> Option<f64> + Sync,
 ) -> Distances {
     let places = samples::on_patches(&patches.patches);
-    let measured: Vec<Sample> = places
+    let measured: Vec<(usize, DVec3, Sample)> = places
         .par_iter()
-        .flat_map_iter(|places| {
+        .enumerate()
+        .flat_map_iter(|(patch, places)| {
             let mut last = None;
             let distance = &distance;
-            places.iter().filter_map(move |&(at, weight)| Some((distance(at, &mut last)?, weight)))
+            places
+                .iter()
+                .filter_map(move |&(at, weight)| Some((patch, at, (distance(at, &mut last)?, weight))))
         })
         .collect();
-    spread::distances(&measured)
+    let samples: Vec<(DVec3, f64)> = measured.iter().map(|sample| (sample.1, sample.2.0)).collect();
+    let step = (patches.area() / MOST as f64).sqrt();
+    let start = |n: usize| {
+        let (patch, at, (height, _)) = measured[n];
+        ((patch, patches.patches[patch].splat.to_local(at).truncate()), height)
+    };
+    let worst: Vec<_> = climb::starts(&samples, step).into_iter().map(start).collect();
+    let around = |(patch, uv): (usize, DVec2), step| {
+        patches.patches[patch].around(uv, step).map(move |to| (patch, to))
+    };
+    let value =
+        |(patch, uv): (usize, DVec2)| distance(patches.patches[patch].splat.surface_point(uv), &mut None);
+    let top = climb::highest(&worst, step, around, value);
+    let distances: Vec<Sample> = measured.iter().map(|sample| sample.2).collect();
+    let found = spread::distances(&distances);
+    Distances { max: found.max.max(top), ..found }
 }
 
 #[cfg(test)]

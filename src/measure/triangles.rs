@@ -25,19 +25,30 @@ impl<'a> Triangles<'a> {
 
     /// Distance from a point to the nearest triangle; `last` as for [`BoxTree::next_nearest`].
     pub(super) fn distance(&self, point: DVec3, last: &mut Option<(DVec3, f64)>) -> Option<f64> {
-        let measure = |item, _: f64| Some((to_triangle(self.mesh.corners(item as usize), point), ()));
+        let measure =
+            |item, _: f64| Some((to_triangle(self.mesh.corners(item as usize), point).length(), ()));
         self.tree.next_nearest(point, last, measure).map(|found| found.distance)
+    }
+
+    /// The place of the mesh nearest to a point.
+    pub(super) fn closest(&self, point: DVec3) -> Option<DVec3> {
+        let measure = |item, _: f64| {
+            let way = to_triangle(self.mesh.corners(item as usize), point);
+            Some((way.length(), way))
+        };
+        self.tree.nearest(point, f64::INFINITY, measure).map(|found| point + found.place)
     }
 }
 
-/// Exact distance from a point to a triangle, which may be as thin as a line.
-fn to_triangle(corners: [Vec3; 3], point: DVec3) -> f64 {
+/// The way from a point to the nearest place of a triangle, which may be as thin as a line.
+fn to_triangle(corners: [Vec3; 3], point: DVec3) -> DVec3 {
     // Relative to the point, so that what is near keeps its digits.
     let [a, b, c] = corners.map(|corner| {
         let way = corner.as_dvec3() - point;
         Vector::new(way.x, way.y, way.z)
     });
-    Triangle::new(a, b, c).project_local_point(Vector::ZERO, true).point.length()
+    let way = Triangle::new(a, b, c).project_local_point(Vector::ZERO, true).point;
+    DVec3::new(way.x, way.y, way.z)
 }
 
 #[cfg(test)]
@@ -71,7 +82,7 @@ mod tests {
             let c = a.lerp(b, value(12 * n + 5) * 1.5) + thin * at(6);
             let corners = [a, b, c].map(|p| p.as_vec3());
             let point = at(9) * [1.0, 0.01, 30.0][n as usize % 3];
-            let (exact, found) = (planted(corners, point), to_triangle(corners, point));
+            let (exact, found) = (planted(corners, point), to_triangle(corners, point).length());
             worst = worst.max((found - exact).abs() / (1.0 + exact));
         }
         assert!(worst < 1e-7, "{worst:e}");
