@@ -146,7 +146,7 @@ fn spread(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + 
         size = size.max(offset.abs().max_element());
         count += 1.0;
     }
-    if !(size > 0.0) {
+    if size <= 0.0 {
         return None;
     }
     let mean = sum / count;

@@ -168,3 +168,73 @@ fn mean_color(surface: &Surface, owned: &[u32]) -> [u8; 3] {
     let count = owned.len() as u64;
     sums.map(|sum| ((sum + count / 2) / count) as u8)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::cloud_surface::cloud_surface;
+    use crate::model::cloud::Cloud;
+
+    /// Points spread evenly over a unit sphere, with its normals.
+    fn sphere(count: usize) -> Surface {
+        let point = |n: usize| {
+            let z = 1.0 - 2.0 * (n as f64 + 0.5) / count as f64;
+            let (sin, cos) = libm::sincos(2.399_963 * n as f64);
+            let across = libm::sqrt(1.0 - z * z);
+            DVec3::new(across * cos, across * sin, z).as_vec3() * 0.5
+        };
+        let positions: Vec<Vec3> = (0..count).map(point).collect();
+        let normals = positions.iter().map(|p| p.normalize()).collect();
+        let cloud = Cloud { positions, normals, ..Cloud::default() };
+        cloud_surface(&cloud, NormalSource::Keep, &[]).unwrap().surface
+    }
+
+    #[test]
+    fn every_spot_stays_and_has_a_point_near_it() {
+        let whole = sphere(20_000);
+        let reach = Reach { radius: 0.05, offset: 0.004 };
+        let thinned = thin(whole.clone(), reach);
+        assert!(thinned.points.len() * 8 < whole.points.len(), "{}", thinned.points.len());
+        let sorted = |surface: &Surface| {
+            let mut spots: Vec<[u32; 4]> = surface
+                .spots
+                .iter()
+                .map(|spot| spot.position.extend(spot.margin).to_array().map(f32::to_bits))
+                .collect();
+            spots.sort_unstable();
+            spots
+        };
+        assert_eq!(sorted(&whole), sorted(&thinned));
+        for (piece, spot) in (0_u32..).zip(&thinned.spots) {
+            let [point, ..] = thinned.pieces[piece as usize];
+            assert!(thinned.pieces_of.row(point).contains(&piece));
+            let way = spot.position.as_dvec3().distance(thinned.point(point));
+            assert!(way <= reach.radius + 2.0 * reach.offset, "{way}");
+            assert!(way <= f64::from(thinned.margin[point as usize]) + reach.offset);
+        }
+        let (mut seen, mut reached) = (vec![false; thinned.points.len()], vec![0]);
+        seen[0] = true;
+        while let Some(row) = reached.pop() {
+            for &other in thinned.neighbours.row(row) {
+                assert!(other != row && thinned.neighbours.row(other).contains(&row));
+                if !std::mem::replace(&mut seen[other as usize], true) {
+                    reached.push(other);
+                }
+            }
+        }
+        assert!(seen.iter().all(|seen| *seen), "the surface stays joined");
+    }
+
+    #[test]
+    fn a_sparse_cloud_stays_as_it_is() {
+        let whole = sphere(2_000);
+        let thinned = thin(whole.clone(), Reach { radius: 0.005, offset: 0.004 });
+        assert_eq!(whole.points, thinned.points);
+        // Nor does a point stand for what its tangent plane passes far off.
+        let thinned = thin(whole.clone(), Reach { radius: 0.1, offset: 1e-7 });
+        assert_eq!(whole.points, thinned.points);
+    }
+}
