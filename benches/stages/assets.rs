@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec2;
 use qsplat::Result;
 use qsplat::analyse::nearest::listed;
-use qsplat::fit::pose::{Pose, Principal, Shapes, principal};
+use qsplat::fit::pose::{Fitting, Pose, Principal, principal};
 use qsplat::model::asset::{Accuracy, Asset};
 use qsplat::model::clip_curve::ClipCurve;
 use qsplat::model::frame::Frame;
@@ -24,7 +24,7 @@ pub fn quadric(analysed: &Analysed, n: usize) -> (Principal, f64) {
     let pose = Pose::at(at(n), analysed.normals[n].as_dvec3());
     let near = listed(&analysed.nearest[n]).map(|other| (at(other as usize), 1.0));
     let radius = near.clone().map(|(point, _)| point.distance(at(n))).fold(f64::MIN_POSITIVE, f64::max);
-    (principal(&pose, Shapes::All, radius, 0.0, near.chain(std::iter::once((at(n), 1.0)))), radius)
+    (principal(&pose, &Fitting::within(radius), near.chain(std::iter::once((at(n), 1.0)))), radius)
 }
 
 /// One splat for every [`POINTS_A_SPLAT`] of so many points, an eighth of them cut.

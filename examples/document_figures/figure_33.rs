@@ -5,7 +5,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use qsplat::analyse::cloud_normals::{NormalSource, normals, plane};
 use qsplat::analyse::distinct::distinct;
 use qsplat::analyse::nearest::Search;
-use qsplat::fit::pose::{Pose, Shapes, principal};
+use qsplat::fit::pose::{Fitting, Pose, principal};
 use qsplat::{Error, Result};
 use rayon::prelude::*;
 
@@ -158,7 +158,7 @@ fn errors(head: &Head, center: usize, radius: f64) -> Option<(Errors, usize)> {
         members.iter().map(|&n| height(at(n)).abs()).sum::<f64>() / members.len() as f64
     };
     let pose = Pose::at(at(center as u32), normal.as_dvec3());
-    let fitted = principal(&pose, Shapes::All, radius, 0.0, members.iter().map(|&n| (at(n), 1.0)));
+    let fitted = principal(&pose, &Fitting::within(radius), members.iter().map(|&n| (at(n), 1.0)));
     let others = members.iter().copied().filter(|&n| n as usize != center);
     let best = plane(&head.points, center, others).normal.as_dvec3();
     let middle = members.iter().map(|&n| at(n)).sum::<DVec3>() / members.len() as f64;

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use glam::{DMat3, DVec2, DVec3, Vec2Swizzles};
 
-use super::quadric::{Height, Moments};
+use super::quadric::{Height, Moments, RIDGE};
 
 /// Where a splat stands: a point and an orthonormal frame `(i, j, k)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,22 +85,39 @@ pub enum Shapes {
 /// that matters of a frame that starts within a few degrees; a third serves bad starts.
 const ROUNDS: usize = 3;
 
+/// How a quadric is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitting {
+    /// What it may be.
+    pub shapes: Shapes,
+    /// About how far the points lie from the start, positive; the unit of the sums.
+    pub radius: f64,
+    /// The difference of `a` and `b`, per model unit, from which `i, j` leave the start's
+    /// directions for the principal ones, which would be noise where the two differ by less.
+    pub least: f64,
+    /// The weight, a point, of keeping the second-order terms small: see [`RIDGE`].
+    pub ridge: f64,
+}
+
+impl Fitting {
+    /// A fit of anything to points within `radius`, its axes always the principal ones.
+    #[must_use]
+    pub fn within(radius: f64) -> Self {
+        Self { shapes: Shapes::All, radius, least: 0.0, ridge: RIDGE }
+    }
+}
+
 /// Fits a quadric to weighted points, from a first pose, and brings it into its principal frame.
 ///
 /// Where only planes are wanted, the plane is fitted, and `i, j` are still the principal
 /// directions of the points: along these an ellipse of a plane reaches farthest, too.
-///
-/// `turn` allows `i, j` to leave the start's directions for the principal ones: not wanted
-/// where the curvatures differ so little that the directions would be noise, which `least`
-/// (the difference of `a` and `b` that matters, per model unit) decides.
 #[must_use]
 pub fn principal(
     start: &Pose,
-    shapes: Shapes,
-    radius: f64,
-    least: f64,
+    fitting: &Fitting,
     points: impl Iterator<Item = (DVec3, f64)> + Clone,
 ) -> Principal {
+    let &Fitting { shapes, radius, least, ridge } = fitting;
     let mut pose = *start;
     let mut height = Height::default();
     for round in 0..ROUNDS {
@@ -109,7 +126,7 @@ pub fn principal(
             let local = pose.to_local(point);
             moments.add(local.x, local.y, local.z, weight);
         }
-        height = moments.solve();
+        height = moments.solve(ridge);
         if shapes == Shapes::Flat {
             let Height { h, c, d, .. } = moments.solve_plane();
             height = Height { h, c, d, ..height };
@@ -160,7 +177,7 @@ mod tests {
             .collect();
         let start =
             Pose::at(plant.center + 0.01 * plant.axes.z_axis, plant.axes.z_axis + 0.2 * plant.axes.x_axis);
-        let found = principal(&start, Shapes::All, 0.1, 1e-6, points.iter().map(|&point| (point, 1.0)));
+        let found = principal(&start, &Fitting::within(0.1), points.iter().map(|&point| (point, 1.0)));
         let same = if (found.curvature - curvature).length() < (found.curvature - curvature.yx()).length() {
             found.pose.axes.x_axis
         } else {
@@ -189,7 +206,7 @@ mod tests {
             .collect();
         let weighted = points.iter().map(|&point| (point, 1.0));
         let start = Pose::at(plant.center, plant.axes.z_axis + 0.1 * plant.axes.y_axis);
-        let found = principal(&start, Shapes::Flat, 0.1, 1e-6, weighted);
+        let found = principal(&start, &Fitting { shapes: Shapes::Flat, ..Fitting::within(0.1) }, weighted);
         assert_eq!(found.curvature, DVec2::ZERO);
         assert!(found.pose.axes.z_axis.dot(plant.axes.z_axis) > 1.0 - 1e-5);
         let along = |axis: DVec3| axis.dot(plant.axes.x_axis).abs();

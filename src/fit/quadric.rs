@@ -17,7 +17,12 @@ const WEAK_PIVOT: f64 = 1e-10;
 /// Weight, a point, of keeping the second-order terms small (ridge regression, Hoerl and
 /// Kennard 1970). Points in a band narrower than about a twentieth of the radius leave the
 /// curvature across it to noise, and there this decides; elsewhere it weighs a millionth.
-const RIDGE: f64 = 1e-7;
+pub const RIDGE: f64 = 1e-7;
+
+/// The same for a quadric that came out too steep at its rim: curvature across a band narrower
+/// than a third of the radius goes, where a point may say nothing but its own error, and the
+/// curvature along it shrinks by a hundredth.
+pub const STIFF_RIDGE: f64 = 1e-3;
 
 /// Height over a plane as a full quadratic polynomial, in the units of its moments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,15 +87,17 @@ impl Moments {
     }
 
     /// The least-squares polynomial; of all that fit equally well, the least.
+    ///
+    /// `ridge` is the weight, a point, of keeping the second-order terms small, as [`RIDGE`].
     #[must_use]
-    pub fn solve(&self) -> Height {
+    pub fn solve(&self, ridge: f64) -> Height {
         let count = self.normal[(0, 0)];
         if count == 0.0 {
             return Height::default();
         }
         let mut normal = self.normal;
         for second_order in 3..6 {
-            normal[(second_order, second_order)] += RIDGE * count;
+            normal[(second_order, second_order)] += ridge * count;
         }
         let (x, rank) = match cholesky(&normal, &self.right) {
             Some(x) => (x, 6),
@@ -173,7 +180,7 @@ mod tests {
                 + height.b * v * v;
             moments.add(u, v, w, 1.0);
         }
-        moments.solve()
+        moments.solve(RIDGE)
     }
 
     fn disc(radius: f64) -> Vec<(f64, f64)> {
@@ -219,6 +226,21 @@ mod tests {
         let found = planted(Height { a: 0.5, h: 0.2, ..Height::default() }, &line, 1.0);
         assert!(found.rank == 3, "{found:?}");
         assert!((found.a - 0.5).abs() < 1e-9 && found.b.abs() < 1e-9 && found.d.abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_stiff_fit_leaves_out_the_curvature_across_a_strip_of_noise() {
+        // A strip a fifth of its length wide, curved along it, its two sides a little apart.
+        let mut moments = Moments::new(1.0);
+        for n in -20_i32..=20 {
+            let u = 0.05 * f64::from(n);
+            for side in [-1.0, 0.0, 1.0] {
+                moments.add(u, 0.1 * side, 0.3 * u * u + 0.01 * side * side, 1.0);
+            }
+        }
+        let (soft, stiff) = (moments.solve(RIDGE), moments.solve(STIFF_RIDGE));
+        assert!((soft.b - 1.0).abs() < 0.01 && (soft.a - 0.3).abs() < 1e-3, "{soft:?}");
+        assert!(stiff.b.abs() < 0.1 && (stiff.a - 0.3).abs() < 0.01, "{stiff:?}");
     }
 
     #[test]

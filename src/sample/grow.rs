@@ -14,7 +14,8 @@ use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care};
 use crate::fit::ellipse::crossings;
-use crate::fit::pose::{Pose, Shapes, principal};
+use crate::fit::pose::{Fitting, Pose, Principal, Shapes, principal};
+use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
 
@@ -169,17 +170,7 @@ impl Grower<'_> {
         if !region.gather(self.surface, pose, outer, seeds) {
             return Err(Stop::Seed);
         }
-        let largest = outer.max_element();
-        let least = ROUND_SHARE * self.budget.fit / (largest * largest);
-        let rim = self.rim(pose, outer, region).map(|point| (point, 1.0));
-        // Every so many-th of the members, which come ring by ring: the sums hardly change.
-        let stride = region.members.len().div_ceil(MOST_FITTED);
-        let members = region.members.iter().step_by(stride).map(|member| {
-            let weight = if self.surface.on_border(member.point) { LINE_WEIGHT } else { 1.0 };
-            (self.surface.point(member.point), weight)
-        });
-        let points = members.chain(rim);
-        let fitted = principal(pose, self.shapes, largest, least, points);
+        let fitted = self.fitted(pose, outer, region).ok_or(Stop::Fit)?;
         if fitted.pose.axes.z_axis.dot(pose.axes.z_axis) < TURNED {
             // The ellipse has turned so far that it reaches other points.
             if !region.gather(self.surface, &fitted.pose, outer, seeds) {
@@ -190,8 +181,7 @@ impl Grower<'_> {
                 member.local = fitted.pose.to_local(self.surface.point(member.point));
             }
         }
-        let steepest = (2.0 * fitted.curvature * outer).abs().max_element();
-        if !(steepest <= STEEPEST && self.keeps(&fitted.pose, outer, fitted.curvature, 1.0, region)) {
+        if !self.keeps(&fitted.pose, outer, fitted.curvature, 1.0, region) {
             return Err(Stop::Fit);
         }
         let clips = self.clips(&fitted.pose, outer, Care::Feasible, region)?;
@@ -206,6 +196,28 @@ impl Grower<'_> {
         let near = |member: &&Member| self.near(fitted.curvature, member.local, 1.0);
         let members = region.members.iter().filter(near).count();
         Ok(Domain { pose: fitted.pose, radii, curvature: fitted.curvature, rank: fitted.rank, members })
+    }
+
+    /// The quadric of members and rim, in its principal frame; `None` if it is too steep.
+    fn fitted(&self, pose: &Pose, outer: DVec2, region: &Region) -> Option<Principal> {
+        let largest = outer.max_element();
+        let least = ROUND_SHARE * self.budget.fit / (largest * largest);
+        let rim = self.rim(pose, outer, region).map(|point| (point, 1.0));
+        // Every so many-th of the members, which come ring by ring: the sums hardly change.
+        let stride = region.members.len().div_ceil(MOST_FITTED);
+        let members = region.members.iter().step_by(stride).map(|member| {
+            let weight = if self.surface.on_border(member.point) { LINE_WEIGHT } else { 1.0 };
+            (self.surface.point(member.point), weight)
+        });
+        let points = members.chain(rim);
+        // Points of a strip say little of the curvature across it, and what they say may be
+        // nothing but their distance from the strip's own surface.
+        [RIDGE, STIFF_RIDGE].into_iter().find_map(|ridge| {
+            let fitting = Fitting { shapes: self.shapes, radius: largest, least, ridge };
+            let fitted = principal(pose, &fitting, points.clone());
+            let steepest = (2.0 * fitted.curvature * outer).abs().max_element();
+            (steepest <= STEEPEST).then_some(fitted)
+        })
     }
 
     /// Whether members and rim lie near enough to a quadric not to stray from the surface.
