@@ -5,6 +5,7 @@ pub mod backing;
 pub mod budget;
 pub mod candidates;
 pub mod cover;
+pub mod facet;
 pub mod grow;
 pub mod margin;
 pub mod outline;

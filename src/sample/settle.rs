@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::backing::backed;
+use super::facet::farthest;
 use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
 use super::region::Region;
@@ -88,8 +89,8 @@ fn finish(
     }
     let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
     let domain = Covering { grower, splat: &splat, conics };
-    let pieces =
-        if grower.surface.spots.is_empty() { domain.triangles(region) } else { domain.spots(region)? };
+    let meshed = grower.surface.spots.is_empty();
+    let pieces = if meshed { domain.triangles(region) } else { domain.spots(region) }?;
     splat.color = mean_color(grower, &pieces);
     Some(Candidate { splat, pieces, rank })
 }
@@ -114,23 +115,36 @@ impl Covering<'_> {
         self.conics.iter().any(|conic| conic.cuts(uv))
     }
 
-    /// The triangles all of whose corners are covered, ascending.
-    fn triangles(&self, region: &mut Region) -> Vec<u32> {
+    /// The triangles that are covered, ascending; `None` if the splat strays from one it reaches.
+    fn triangles(&self, region: &mut Region) -> Option<Vec<u32>> {
+        let surface = self.grower.surface;
         let inside = region.members.iter().filter(|member| self.covers(member.local, 0.0));
         let points: Vec<u32> = inside.map(|member| member.point).collect();
+        let mut reached: Vec<u32> = region
+            .members
+            .iter()
+            .flat_map(|member| surface.pieces_of.row(member.point).iter().copied())
+            .collect();
+        reached.sort_unstable();
+        reached.dedup();
         region.unmark();
         for &point in &points {
             region.mark(point);
         }
-        let surface = self.grower.surface;
-        let mut pieces: Vec<u32> = points
-            .iter()
-            .flat_map(|&point| surface.pieces_of.row(point).iter().copied())
-            .filter(|&piece| surface.pieces[piece as usize].iter().all(|&corner| region.marked(corner)))
-            .collect();
-        pieces.sort_unstable();
-        pieces.dedup();
-        pieces
+        let mut pieces = Vec::new();
+        for piece in reached {
+            let corners = surface.pieces[piece as usize];
+            let facet = corners.map(|corner| self.splat.to_local(surface.point(corner)));
+            let farthest = farthest(&facet, self.splat.curvature, self.splat.radii);
+            if farthest > ROUNDED_SLACK * self.grower.budget.rim {
+                return None;
+            }
+            let near = farthest <= ROUNDED_SLACK * self.grower.budget.fit;
+            if near && corners.iter().all(|&corner| region.marked(corner)) {
+                pieces.push(piece);
+            }
+        }
+        Some(pieces)
     }
 
     /// The spots that are covered, ascending; `None` if the splat strays from one it reaches.

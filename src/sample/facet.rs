@@ -1,0 +1,119 @@
+//! How far a flat facet lies from a quadric, between its corners too.
+
+use glam::{DVec2, DVec3};
+
+use crate::fit::ellipse::crossings;
+
+/// The largest distance, along `k`, between a quadric and the part of a facet that its edges
+/// and inside show within an ellipse; 0 where none of it lies there.
+///
+/// Over a facet the distance is `Σ λᵢ dᵢ + Σ λᵢ λⱼ q(pᵢ - pⱼ)`, of the corners' distances `dᵢ`
+/// and the quadric's form `q`: greatest at a corner, on an edge where its slope is zero, or, for
+/// an elliptic form, at one place inside. Of a facet that the ellipse's rim passes through, the
+/// edges are looked at as far as they lie in the ellipse.
+#[must_use]
+pub fn farthest(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2) -> f64 {
+    let edges = [[0, 1], [1, 2], [2, 0]].map(|[a, b]| along(facet[a], facet[b], curvature, radii));
+    let whole = facet.iter().all(|corner| (corner.truncate() / radii).length_squared() <= 1.0);
+    let within = if whole { inside(facet, curvature) } else { 0.0 };
+    edges.into_iter().fold(within, f64::max)
+}
+
+/// `q`, the height of the quadric over a place.
+fn form(curvature: DVec2, uv: DVec2) -> f64 {
+    (curvature * uv * uv).element_sum()
+}
+
+/// Signed distance of a place from the quadric.
+fn above(curvature: DVec2, place: DVec3) -> f64 {
+    place.z - form(curvature, place.truncate())
+}
+
+/// The largest distance on an edge, as far as it lies in the ellipse.
+fn along(a: DVec3, b: DVec3, curvature: DVec2, radii: DVec2) -> f64 {
+    let Some((enter, leave)) = crossings(a.truncate(), b.truncate(), radii) else { return 0.0 };
+    let (first, last) = (enter.max(0.0), leave.min(1.0));
+    if first > last {
+        return 0.0;
+    }
+    let (from, to) = (above(curvature, a), above(curvature, b));
+    let bend = form(curvature, (b - a).truncate());
+    let at = |t: f64| (from + t * (to - from) + t * (1.0 - t) * bend).abs();
+    let level = 0.5 + 0.5 * (to - from) / bend;
+    // Without a bend the level place is infinite or no number, and lies on no edge.
+    let middle = if level > first && level < last { at(level) } else { 0.0 };
+    at(first).max(at(last)).max(middle)
+}
+
+/// The distance at the place inside a facet where it changes in no direction; 0 if there is none.
+fn inside(facet: &[DVec3; 3], curvature: DVec2) -> f64 {
+    let origin = above(curvature, facet[0]);
+    let [p, q] = [facet[1] - facet[0], facet[2] - facet[0]];
+    let slope = DVec2::new(above(curvature, facet[1]), above(curvature, facet[2])) - origin;
+    let (pp, qq) = (form(curvature, p.truncate()), form(curvature, q.truncate()));
+    let pq = (curvature * p.truncate() * q.truncate()).element_sum();
+    // With s and t along two sides: origin + slope·(s, t) + s pp + t qq - (s p + t q)'s form.
+    let determinant = pp * qq - pq * pq;
+    let right = 0.5 * (slope + DVec2::new(pp, qq));
+    let place = DVec2::new(right.x * qq - right.y * pq, right.y * pp - right.x * pq) / determinant;
+    if !(place.min_element() > 0.0 && place.element_sum() < 1.0) {
+        return 0.0;
+    }
+    let DVec2 { x: s, y: t } = place;
+    (origin + slope.dot(place) + s * pp + t * qq - (s * s * pp + 2.0 * s * t * pq + t * t * qq)).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random(seed: u32, k: u32) -> f64 {
+        f64::from((seed * 16 + k).wrapping_mul(2_654_435_769) >> 8) / f64::from(1 << 23) - 1.0
+    }
+
+    /// The largest distance over places of a facet inside an ellipse, `edges` alone or all.
+    fn brute(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2, edges: bool) -> f64 {
+        const STEPS: u32 = 60;
+        let mut most: f64 = 0.0;
+        for i in 0..=STEPS {
+            for j in 0..=STEPS - i {
+                if edges && i > 0 && j > 0 && i + j < STEPS {
+                    continue;
+                }
+                let (s, t) = (f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
+                let place = facet[0] + s * (facet[1] - facet[0]) + t * (facet[2] - facet[0]);
+                if (place.truncate() / radii).length_squared() <= 1.0 {
+                    most = most.max(above(curvature, place).abs());
+                }
+            }
+        }
+        most
+    }
+
+    #[test]
+    fn no_place_of_a_facet_is_farther() {
+        let (mut partial, mut bulging) = (0, 0);
+        for seed in 0..4000 {
+            let value = |k: u32| random(seed, k);
+            let corner = |k: u32| DVec3::new(value(k), value(k + 1), 0.2 * value(k + 2));
+            let facet = [corner(0), corner(3), corner(6)];
+            let curvature = DVec2::new(2.0 * value(9), 2.0 * value(10));
+            let radii = DVec2::new(1.0 + 0.6 * value(11), 1.0 + 0.6 * value(12));
+            let whole = facet.iter().all(|p| (p.truncate() / radii).length_squared() <= 1.0);
+            let found = farthest(&facet, curvature, radii);
+            let brute = brute(&facet, curvature, radii, !whole);
+            assert!(found >= brute - 1e-12, "{found} {brute} {facet:?}");
+            // The places looked at lie a sixtieth apart; those on the rim itself are between them.
+            assert!(found <= brute + if whole { 2e-3 } else { 0.2 }, "{found} {brute} {facet:?}");
+            partial += u32::from(!whole);
+            bulging += u32::from(whole && inside(&facet, curvature) == found);
+        }
+        assert!(partial > 500 && bulging > 50, "{partial} {bulging}");
+    }
+
+    #[test]
+    fn over_a_plane_a_corner_is_farthest() {
+        let facet = [DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.5, 0.0, -0.3), DVec3::new(0.0, 0.5, 0.2)];
+        assert!((farthest(&facet, DVec2::ZERO, DVec2::ONE) - 0.3).abs() < 1e-15);
+    }
+}
