@@ -236,7 +236,7 @@ pub fn bake(
     let total = surface.pieces.len() as u64;
     let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));
     clock.stage(progress, "cover");
-    let (splats, choice) = cover(&grower, &regions, found);
+    let (splats, choice) = cover(&grower, &regions, found, options.effort);
     if choice.uncovered > 0 {
         return Err(Error::Internal(format!(
             "{} pieces of the surface could not be covered",

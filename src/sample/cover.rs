@@ -7,6 +7,7 @@ use std::collections::BinaryHeap;
 
 use super::candidates::Regions;
 use super::grow::Grower;
+use super::merge::merge;
 use super::polygon;
 use super::settle::Candidate;
 use crate::model::splat::{Kind, Splat};
@@ -33,6 +34,8 @@ pub struct Choice {
     pub uncovered: usize,
     /// Splats dropped because others cover all that they cover.
     pub redundant: usize,
+    /// Splats saved by merging.
+    pub merged: usize,
     /// Splats whose points did not determine a whole quadric.
     pub low_rank: usize,
 }
@@ -64,18 +67,109 @@ impl PartialEq for Gain {
 
 impl Eq for Gain {}
 
+/// Candidates, and those of them that are chosen to cover every piece.
+pub(super) struct Cover {
+    pub(super) candidates: Vec<Candidate>,
+    /// Indices of candidates.
+    pub(super) chosen: Vec<usize>,
+    /// For each piece, how many of the chosen cover it.
+    pub(super) times: Vec<u32>,
+    /// The area of each piece.
+    areas: Vec<f64>,
+}
+
 /// Chooses from the candidates, adding to them what no candidate covers.
 #[must_use]
-pub fn cover(grower: &Grower, regions: &Regions, mut candidates: Vec<Candidate>) -> (Vec<Splat>, Choice) {
+pub fn cover(
+    grower: &Grower,
+    regions: &Regions,
+    candidates: Vec<Candidate>,
+    effort: u8,
+) -> (Vec<Splat>, Choice) {
     let areas: Vec<f64> = (0..grower.surface.pieces.len() as u32).map(|p| grower.surface.area(p)).collect();
     let mut choice = Choice::default();
     let mut times = vec![0_u32; areas.len()];
-    let mut chosen = greedy(&candidates, &areas, &mut times);
-    cover_rest(grower, regions, &mut candidates, &mut chosen, &mut times, &mut choice);
-    choice.candidates = candidates.len();
-    choice.redundant = drop_redundant(&candidates, &areas, &mut chosen, &mut times);
+    let chosen = greedy(&candidates, &areas, &mut times);
+    let mut cover = Cover { candidates, chosen, times, areas };
+    cover_rest(grower, regions, &mut cover, &mut choice);
+    choice.candidates = cover.candidates.len();
+    choice.redundant = cover.drop_redundant();
+    choice.merged = merge(grower, regions, &mut cover, effort);
+    let Cover { candidates, chosen, .. } = cover;
     choice.low_rank = chosen.iter().filter(|&&index| candidates[index].rank < 6).count();
     (chosen.into_iter().map(|index| candidates[index].splat.clone()).collect(), choice)
+}
+
+impl Cover {
+    /// The pieces that no other splat covers than these two, ascending.
+    pub(super) fn own(&self, pair: [usize; 2]) -> Vec<u32> {
+        let [first, second] = pair.map(|index| self.candidates[index].pieces.as_slice());
+        let mut own = Vec::new();
+        let (mut a, mut b) = (first.iter().peekable(), second.iter().peekable());
+        loop {
+            let piece = match (a.peek(), b.peek()) {
+                (None, None) => return own,
+                (Some(&&piece), None) | (None, Some(&&piece)) => piece,
+                (Some(&&one), Some(&&other)) => one.min(other),
+            };
+            let mut here = u32::from(a.next_if(|&&next| next == piece).is_some());
+            here += u32::from(b.next_if(|&&next| next == piece).is_some());
+            if self.times[piece as usize] == here {
+                own.push(piece);
+            }
+        }
+    }
+
+    /// The area of the pieces that only this splat covers.
+    pub(super) fn own_area(&self, index: usize) -> f64 {
+        let own = self.candidates[index].pieces.iter().filter(|&&piece| self.times[piece as usize] == 1);
+        own.map(|&piece| self.areas[piece as usize]).sum()
+    }
+
+    /// Whether a candidate covers all that no other splat covers than these two.
+    pub(super) fn serves(&self, pair: [usize; 2], candidate: &Candidate) -> bool {
+        self.own(pair).iter().all(|piece| candidate.pieces.binary_search(piece).is_ok())
+    }
+
+    /// Takes a candidate for two of the chosen, which the caller takes off the list.
+    pub(super) fn replace(&mut self, pair: [usize; 2], candidate: Candidate) {
+        for index in pair {
+            for &piece in &self.candidates[index].pieces {
+                self.times[piece as usize] -= 1;
+            }
+        }
+        self.choose(candidate);
+    }
+
+    /// Adds a candidate, and takes it.
+    fn choose(&mut self, candidate: Candidate) {
+        for &piece in &candidate.pieces {
+            self.times[piece as usize] += 1;
+        }
+        self.chosen.push(self.candidates.len());
+        self.candidates.push(candidate);
+    }
+
+    /// Drops splats all of whose pieces others cover, those with the least area first; how many.
+    pub(super) fn drop_redundant(&mut self) -> usize {
+        let area =
+            |index: usize| self.candidates[index].pieces.iter().map(|&p| self.areas[p as usize]).sum::<f64>();
+        let mut order: Vec<(f64, usize)> = self.chosen.iter().map(|&index| (area(index), index)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut dropped = Vec::new();
+        for (_, index) in order {
+            let pieces = &self.candidates[index].pieces;
+            if pieces.iter().all(|&piece| self.times[piece as usize] > 1) {
+                for &piece in pieces {
+                    self.times[piece as usize] -= 1;
+                }
+                dropped.push(index);
+            }
+        }
+        dropped.sort_unstable();
+        self.chosen.retain(|index| dropped.binary_search(index).is_err());
+        dropped.len()
+    }
 }
 
 fn greedy(candidates: &[Candidate], areas: &[f64], times: &mut [u32]) -> Vec<usize> {
@@ -110,19 +204,12 @@ fn greedy(candidates: &[Candidate], areas: &[f64], times: &mut [u32]) -> Vec<usi
 const BATCH: usize = 64;
 
 /// Covers what no candidate does.
-fn cover_rest(
-    grower: &Grower,
-    regions: &Regions,
-    candidates: &mut Vec<Candidate>,
-    chosen: &mut Vec<usize>,
-    times: &mut [u32],
-    choice: &mut Choice,
-) {
+fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mut Choice) {
     let mut at = 0;
-    while at < times.len() {
+    while at < cover.times.len() {
         let mut batch = Vec::with_capacity(BATCH);
-        while at < times.len() && batch.len() < BATCH {
-            if times[at] == 0 {
+        while at < cover.times.len() && batch.len() < BATCH {
+            if cover.times[at] == 0 {
                 batch.push(at as u32);
             }
             at += 1;
@@ -130,52 +217,17 @@ fn cover_rest(
         let grown: Vec<Option<Candidate>> =
             batch.par_iter().map(|&piece| regions.with(|region| grower.grow(piece, region))).collect();
         for (&piece, grown) in batch.iter().zip(grown) {
-            if times[piece as usize] > 0 {
+            if cover.times[piece as usize] > 0 {
                 continue;
             }
-            let candidate = match grown {
-                Some(candidate) => candidate,
-                None => match polygon::over(grower, piece) {
-                    Some(candidate) => {
-                        choice.last_resorts += 1;
-                        candidate
-                    }
-                    None => {
-                        choice.uncovered += 1;
-                        continue;
-                    }
-                },
-            };
-            for &covered in &candidate.pieces {
-                times[covered as usize] += 1;
+            let last_resort = grown.is_none();
+            match grown.or_else(|| polygon::over(grower, piece)) {
+                Some(candidate) => {
+                    choice.last_resorts += usize::from(last_resort);
+                    cover.choose(candidate);
+                }
+                None => choice.uncovered += 1,
             }
-            chosen.push(candidates.len());
-            candidates.push(candidate);
         }
     }
-}
-
-/// Drops splats all of whose pieces others cover, those with the least area first.
-fn drop_redundant(
-    candidates: &[Candidate],
-    areas: &[f64],
-    chosen: &mut Vec<usize>,
-    times: &mut [u32],
-) -> usize {
-    let area = |index: usize| candidates[index].pieces.iter().map(|&p| areas[p as usize]).sum::<f64>();
-    let mut order: Vec<(f64, usize)> = chosen.iter().map(|&index| (area(index), index)).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut dropped = Vec::new();
-    for (_, index) in order {
-        let pieces = &candidates[index].pieces;
-        if pieces.iter().all(|&piece| times[piece as usize] > 1) {
-            for &piece in pieces {
-                times[piece as usize] -= 1;
-            }
-            dropped.push(index);
-        }
-    }
-    dropped.sort_unstable();
-    chosen.retain(|index| dropped.binary_search(index).is_err());
-    dropped.len()
 }
