@@ -49,10 +49,14 @@ impl Need {
         let piece = self.central(grower.surface);
         let seeds = grower.surface.pieces[piece as usize];
         let least = self.domain(grower, &seeds, region)?;
-        let mut settled = |domain: Domain| {
+        let settled = |domain: Domain, region: &mut Region| {
             settle(grower, domain, &seeds, piece, region).filter(|found| self.within(&found.pieces))
         };
-        settled(least)
+        let found = settled(least.clone(), region)?;
+        // More than is needed leaves less for others to cover alone.
+        let larger = grower.enlarged(least, &seeds, region);
+        let grown = settled(larger, region);
+        Some(grown.filter(|grown| grown.pieces.len() > found.pieces.len()).unwrap_or(found))
     }
 
     /// A domain that encloses all places.

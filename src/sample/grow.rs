@@ -115,7 +115,13 @@ impl Grower<'_> {
     pub fn grow(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
         let seeds = self.surface.pieces[piece as usize];
         let (pose, least) = self.start(piece);
-        let mut best = self.attempt(&pose, DVec2::splat(least), &seeds, region).ok()?;
+        let least = self.attempt(&pose, DVec2::splat(least), &seeds, region).ok()?;
+        let best = self.enlarged(least, &seeds, region);
+        settle(self, best, &seeds, piece, region)
+    }
+
+    /// A domain grown as long as it keeps the budget and reaches more of the surface.
+    pub(super) fn enlarged(&self, mut best: Domain, seeds: &[u32], region: &mut Region) -> Domain {
         let mut grow = |best: &mut Domain, factor: DVec2| {
             let reached = best.members;
             let mut grown = best.clone();
@@ -126,7 +132,7 @@ impl Grower<'_> {
                 if radii.max_element() > LONGEST_RADIUS {
                     return false;
                 }
-                match self.attempt(&grown.pose, radii, &seeds, region) {
+                match self.attempt(&grown.pose, radii, seeds, region) {
                     Ok(domain) => grown = domain,
                     Err(_) => return false,
                 }
@@ -143,7 +149,7 @@ impl Grower<'_> {
         for step in STRETCH_STEPS {
             while grow(&mut best, DVec2::new(step, 1.0)) || grow(&mut best, DVec2::new(1.0, step)) {}
         }
-        settle(self, best, &seeds, piece, region)
+        best
     }
 
     /// A pose at the middle of a piece and the least radius worth trying.
