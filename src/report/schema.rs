@@ -70,6 +70,8 @@ pub struct Choice {
     pub candidates: u64,
     /// Splats dropped because others cover all that they cover.
     pub redundant: u64,
+    /// Splats saved by moving and merging them.
+    pub merged: u64,
     /// Pieces of surface that only a splat of their own could cover.
     pub last_resorts: u64,
     /// Splats whose points did not determine a whole quadric.

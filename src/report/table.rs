@@ -86,10 +86,10 @@ impl Table {
     }
 
     fn choice(&mut self, choice: &Choice) {
-        let Choice { samples, candidates, redundant, last_resorts, low_rank } = choice;
+        let Choice { samples, candidates, redundant, merged, last_resorts, low_rank } = choice;
         self.row(
             "chosen from",
-            format!("{candidates} candidates over {samples} samples, {redundant} redundant"),
+            format!("{candidates} candidates over {samples} samples, {redundant} redundant, {merged} merged"),
         );
         self.row(
             "fell back",

@@ -71,7 +71,8 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         cpu_seconds: 2.0 * wall_seconds,
     };
     let run = Run::of_stages(vec![stage("read", 0.25), stage("sample", 0.375), stage("read", 0.125)], 2);
-    let choice = Choice { samples: 900, candidates: 20, redundant: 3, last_resorts: 1, low_rank: 2 };
+    let choice =
+        Choice { samples: 900, candidates: 20, redundant: 3, merged: 4, last_resorts: 1, low_rank: 2 };
     Origin { input, options, choice, run }
 }
 

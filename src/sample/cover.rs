@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 
 use super::candidates::Regions;
 use super::grow::Grower;
-use super::merge::merge;
+use super::moves::improve;
 use super::polygon;
 use super::settle::Candidate;
 use crate::model::splat::{Kind, Splat};
@@ -34,7 +34,7 @@ pub struct Choice {
     pub uncovered: usize,
     /// Splats dropped because others cover all that they cover.
     pub redundant: usize,
-    /// Splats saved by merging.
+    /// Splats saved by moving and merging them.
     pub merged: usize,
     /// Splats whose points did not determine a whole quadric.
     pub low_rank: usize,
@@ -94,30 +94,20 @@ pub fn cover(
     cover_rest(grower, regions, &mut cover, &mut choice);
     choice.candidates = cover.candidates.len();
     choice.redundant = cover.drop_redundant();
-    choice.merged = merge(grower, regions, &mut cover, effort);
+    choice.merged = improve(grower, regions, &mut cover, effort);
     let Cover { candidates, chosen, .. } = cover;
     choice.low_rank = chosen.iter().filter(|&&index| candidates[index].rank < 6).count();
     (chosen.into_iter().map(|index| candidates[index].splat.clone()).collect(), choice)
 }
 
 impl Cover {
-    /// The pieces that no other splat covers than these two, ascending.
-    pub(super) fn own(&self, pair: [usize; 2]) -> Vec<u32> {
-        let [first, second] = pair.map(|index| self.candidates[index].pieces.as_slice());
-        let mut own = Vec::new();
-        let (mut a, mut b) = (first.iter().peekable(), second.iter().peekable());
-        loop {
-            let piece = match (a.peek(), b.peek()) {
-                (None, None) => return own,
-                (Some(&&piece), None) | (None, Some(&&piece)) => piece,
-                (Some(&&one), Some(&&other)) => one.min(other),
-            };
-            let mut here = u32::from(a.next_if(|&&next| next == piece).is_some());
-            here += u32::from(b.next_if(|&&next| next == piece).is_some());
-            if self.times[piece as usize] == here {
-                own.push(piece);
-            }
-        }
+    /// The pieces that no other splat covers than these, ascending.
+    pub(super) fn own(&self, these: &[usize]) -> Vec<u32> {
+        let mut pieces: Vec<u32> =
+            these.iter().flat_map(|&index| self.candidates[index].pieces.iter().copied()).collect();
+        pieces.sort_unstable();
+        let same = pieces.chunk_by(|a, b| a == b);
+        same.filter(|same| self.times[same[0] as usize] as usize == same.len()).map(|same| same[0]).collect()
     }
 
     /// The area of the pieces that only this splat covers.
@@ -126,17 +116,15 @@ impl Cover {
         own.map(|&piece| self.areas[piece as usize]).sum()
     }
 
-    /// Whether a candidate covers all that no other splat covers than these two.
-    pub(super) fn serves(&self, pair: [usize; 2], candidate: &Candidate) -> bool {
-        self.own(pair).iter().all(|piece| candidate.pieces.binary_search(piece).is_ok())
+    /// Whether a candidate covers all that no other splat covers than these.
+    pub(super) fn serves(&self, these: &[usize], candidate: &Candidate) -> bool {
+        self.own(these).iter().all(|piece| candidate.pieces.binary_search(piece).is_ok())
     }
 
-    /// Takes a candidate for two of the chosen, which the caller takes off the list.
-    pub(super) fn replace(&mut self, pair: [usize; 2], candidate: Candidate) {
-        for index in pair {
-            for &piece in &self.candidates[index].pieces {
-                self.times[piece as usize] -= 1;
-            }
+    /// Takes a candidate for some of the chosen, which the caller takes off the list.
+    pub(super) fn replace(&mut self, these: &[usize], candidate: Candidate) {
+        for &piece in these.iter().flat_map(|&index| &self.candidates[index].pieces) {
+            self.times[piece as usize] -= 1;
         }
         self.choose(candidate);
     }

@@ -12,6 +12,9 @@ use crate::fit::pose::Pose;
 /// rounding of the splat leave them inside.
 const OUTSET: f64 = 1.02;
 
+/// No ellipse around places is more slender than this: those on a line have no width.
+const SLENDEREST: f64 = 0.05;
+
 /// Times an ellipse is laid out anew in the frame of the quadric found over the last one.
 const ROUNDS: usize = 2;
 
@@ -32,8 +35,7 @@ impl Need {
     /// A need of these pieces, ascending; `axes` are those of a splat over some of them. `None`
     /// for no pieces.
     pub(super) fn new(surface: &Surface, pieces: Vec<u32>, axes: DMat3) -> Option<Self> {
-        let mut corners: Vec<u32> =
-            pieces.iter().flat_map(|&piece| surface.pieces[piece as usize]).collect();
+        let mut corners: Vec<u32> = pieces.iter().flat_map(|&piece| surface.pieces[piece as usize]).collect();
         corners.sort_unstable();
         corners.dedup();
         let places: Vec<DVec3> = corners.into_iter().map(|corner| surface.point(corner)).collect();
@@ -44,7 +46,7 @@ impl Need {
         (!pieces.is_empty()).then_some(Self { pieces, places, margin, pose, reach })
     }
 
-    /// The largest splat found that covers all of it.
+    /// A splat that covers all of it, grown as far as that goes on.
     pub(super) fn covered(&self, grower: &Grower, region: &mut Region) -> Option<Candidate> {
         let piece = self.central(grower.surface);
         let seeds = grower.surface.pieces[piece as usize];
@@ -101,6 +103,3 @@ impl Need {
         self.pieces.iter().all(|piece| pieces.binary_search(piece).is_ok())
     }
 }
-
-/// No ellipse around places is more slender than this.
-const SLENDEREST: f64 = 0.05;

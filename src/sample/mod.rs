@@ -1,5 +1,5 @@
 //! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
-//! became redundant.
+//! became redundant, move and merge what is left.
 
 pub mod backing;
 pub mod budget;
@@ -9,7 +9,7 @@ pub mod enclose;
 pub mod facet;
 pub mod grow;
 pub mod margin;
-pub mod merge;
+pub mod moves;
 pub mod outline;
 pub mod polygon;
 pub mod region;

@@ -1,0 +1,159 @@
+//! Local moves on a cover: splats are laid out anew, and two that one can stand for are merged.
+//!
+//! A greedy cover leaves gaps that small splats fill, and by then much of what the large ones
+//! around them cover is covered twice. What two neighbours alone cover is often small enough for
+//! one splat laid out for it. A splat for which no neighbour is found moves to the middle of what
+//! it alone covers and grows from there, which leaves less for others to cover alone.
+
+use rayon::prelude::*;
+
+use super::candidates::Regions;
+use super::cover::{Cover, cost};
+use super::enclose::Need;
+use super::grow::Grower;
+use super::region::Region;
+use super::settle::Candidate;
+use crate::analyse::surface::Rows;
+
+/// Splats looked at side by side before their moves are made. Batches are of the same size
+/// whatever the threads, so that the result is the same too.
+const BATCH: usize = 64;
+
+/// A pass that saves less than this share of the splats is the last.
+const WORTH: f64 = 0.005;
+
+/// No two splats are merged whose own pieces reach this many times farther than the larger of
+/// their radii: none so large kept the bound there.
+const FARTHEST: f64 = 1.2;
+
+/// How much is tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Thoroughness {
+    /// Passes over all splats.
+    passes: usize,
+    /// Neighbours that a splat is tried with in one pass, those first whose own pieces lie
+    /// closest together.
+    partners: usize,
+}
+
+impl Thoroughness {
+    fn of(effort: u8) -> Self {
+        let effort = usize::from(effort);
+        Self { passes: effort - 1, partners: effort.div_ceil(2) }
+    }
+}
+
+/// Moves and merges splats while that saves some; how many there are fewer.
+pub(super) fn improve(grower: &Grower, regions: &Regions, cover: &mut Cover, effort: u8) -> usize {
+    let Thoroughness { passes, partners } = Thoroughness::of(effort);
+    let before = cover.chosen.len();
+    for _ in 0..passes {
+        let started = cover.chosen.len();
+        pass(grower, regions, cover, partners);
+        let saved = started - cover.chosen.len();
+        if (saved as f64) < WORTH * started as f64 {
+            break;
+        }
+    }
+    before - cover.chosen.len()
+}
+
+/// One splat that takes the place of others.
+struct Move {
+    /// One splat or two, which it is to replace.
+    old: Vec<usize>,
+    new: Candidate,
+}
+
+fn pass(grower: &Grower, regions: &Regions, cover: &mut Cover, partners: usize) {
+    let owners = owners(cover);
+    let mut alive = vec![false; cover.candidates.len()];
+    cover.chosen.iter().for_each(|&index| alive[index] = true);
+    // Those with the least of their own first: they are the easiest to do without.
+    let mut order: Vec<(f64, usize)> =
+        cover.chosen.iter().map(|&index| (cover.own_area(index), index)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    for batch in order.chunks(BATCH) {
+        let search = Search { grower, cover, alive: &alive, owners: &owners };
+        let found: Vec<Option<Move>> = batch
+            .par_iter()
+            .map(|&(_, index)| regions.with(|region| search.best(index, partners, region)))
+            .collect();
+        for Move { old, new } in found.into_iter().flatten() {
+            // An earlier move of the batch may have left more for these to cover alone.
+            if old.iter().all(|&index| alive[index]) && cover.serves(&old, &new) {
+                old.iter().for_each(|&index| alive[index] = false);
+                cover.replace(&old, new);
+            }
+        }
+    }
+    cover.chosen.retain(|&index| alive.get(index).is_none_or(|&alive| alive));
+    cover.drop_redundant();
+}
+
+/// For each piece, the chosen splats that cover it.
+fn owners(cover: &Cover) -> Rows {
+    let pairs = cover
+        .chosen
+        .iter()
+        .flat_map(|&index| cover.candidates[index].pieces.iter().map(move |&piece| (piece, index as u32)));
+    Rows::from_pairs(cover.times.len(), pairs.collect())
+}
+
+/// What a search for a move looks at.
+struct Search<'a> {
+    grower: &'a Grower<'a>,
+    cover: &'a Cover,
+    /// For each candidate, whether it is chosen still.
+    alive: &'a [bool],
+    owners: &'a Rows,
+}
+
+impl Search<'_> {
+    /// The first merger found of a splat with one of its neighbours, or where it moves alone.
+    fn best(&self, index: usize, partners: usize, region: &mut Region) -> Option<Move> {
+        if !self.alive[index] {
+            return None;
+        }
+        let near = self.neighbours(index);
+        let mut pairs: Vec<(f64, usize, Need)> =
+            near.into_iter().filter_map(|other| self.pair(index, other)).collect();
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let merger = pairs
+            .into_iter()
+            .take(partners)
+            .find_map(|(_, other, need)| self.move_to(&need, vec![index, other], region));
+        merger.or_else(|| {
+            let axes = self.cover.candidates[index].splat.axes;
+            let need = Need::new(self.grower.surface, self.cover.own(&[index]), axes)?;
+            self.move_to(&need, vec![index], region)
+        })
+    }
+
+    /// Those chosen that cover some of what a splat covers, ascending.
+    fn neighbours(&self, index: usize) -> Vec<usize> {
+        let pieces = self.cover.candidates[index].pieces.iter();
+        let mut near: Vec<u32> = pieces.flat_map(|&piece| self.owners.row(piece)).copied().collect();
+        near.sort_unstable();
+        near.dedup();
+        let near = near.into_iter().map(|other| other as usize);
+        near.filter(|&other| other != index && self.alive[other]).collect()
+    }
+
+    /// What only two splats cover, and how far it reaches; `None` if too far for one.
+    fn pair(&self, index: usize, other: usize) -> Option<(f64, usize, Need)> {
+        let [one, two] = [index, other].map(|of| &self.cover.candidates[of].splat);
+        let larger = if one.radii.element_product() >= two.radii.element_product() { one } else { two };
+        let need = Need::new(self.grower.surface, self.cover.own(&[index, other]), larger.axes)?;
+        let most = FARTHEST * one.radii.max(two.radii).max_element();
+        (need.reach <= most).then_some((need.reach, other, need))
+    }
+
+    /// A splat for a need in the place of those it comes from, if it costs no more: for one it
+    /// may cost the same.
+    fn move_to(&self, need: &Need, old: Vec<usize>, region: &mut Region) -> Option<Move> {
+        let new = need.covered(self.grower, region)?;
+        let spent: f64 = old.iter().map(|&index| cost(&self.cover.candidates[index].splat)).sum();
+        (cost(&new.splat) <= spent).then_some(Move { old, new })
+    }
+}
