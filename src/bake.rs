@@ -9,12 +9,14 @@ use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_normals::NormalSource;
 use crate::analyse::cloud_surface::cloud_surface;
-use crate::analyse::mesh_surface::{Features, Found, cut_lines, mesh_surface};
+use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
 use crate::analyse::surface::Surface;
 use crate::analyse::thin::{Reach, thin};
+use crate::analyse::worth::Worth;
 use crate::error::{Error, Result};
 pub use crate::fit::clip::Clips;
 pub use crate::fit::pose::Shapes;
+use crate::fit::pose::misfit;
 use crate::ingest::Input;
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::frame::Frame;
@@ -299,10 +301,25 @@ const LEAST_ERROR_SHARE: f64 = 1e-6;
 /// No refinement makes more pieces than this.
 const MOST_PIECES: usize = 4_000_000;
 
-/// Pieces are refined to this share of the radius that a quadric splat reaches on a generic
-/// smooth surface: there the third-order term `r³ / L²` meets the error, with features of
-/// size `L` a quarter of the diagonal.
+/// Pieces are refined to this share of the radius that a splat is expected to reach.
 const PIECE_SHARE: f64 = 1.0 / 6.0;
+
+/// The size of features that a generic smooth surface has, as a share of the diagonal.
+const FEATURE_SHARE: f64 = 0.25;
+
+/// The radius that a quadric splat reaches on a generic smooth surface: there the third-order
+/// term `r³ / L²` meets the error, with features of size `L`.
+fn expected_radius(max_error: f64, diagonal: f64) -> f64 {
+    let feature = FEATURE_SHARE * diagonal;
+    libm::cbrt(max_error * feature * feature)
+}
+
+/// How a mesh becomes a surface under an error bound.
+fn making(max_error: f64, diagonal: f64) -> Making<'static> {
+    let reach = expected_radius(max_error, diagonal);
+    let worth = Worth { reach, max_error, misfit: &misfit };
+    Making { longest: PIECE_SHARE * reach, most: MOST_PIECES, worth }
+}
 
 /// A point of a cloud stands for others within this many error bounds: a fraction of the
 /// radius of the splats that a smooth surface needs, where some twenty points are fitted.
@@ -327,10 +344,8 @@ const SHORTEST_LINE: f64 = 8.0;
 fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> Result<Analysed> {
     match input {
         Input::Mesh(mesh) => {
-            let feature = 0.25 * diagonal;
-            let longest = PIECE_SHARE * libm::cbrt(max_error * feature * feature);
             let features = features(mesh, &options.edges, options.edge_angle, max_error);
-            let (surface, features) = mesh_surface(mesh, &features, longest, MOST_PIECES);
+            let (surface, features) = mesh_surface(mesh, &features, &making(max_error, diagonal));
             Ok(Analysed { surface, features, ..Analysed::default() })
         }
         Input::Cloud(cloud) => {
@@ -372,7 +387,10 @@ pub fn feature_lines(
 ) -> Option<Vec<Vec<DVec3>>> {
     let lines = match (input, edges) {
         (_, Edges::None) => Vec::new(),
-        (Input::Mesh(mesh), _) => cut_lines(mesh, &features(mesh, edges, edge_angle, max_error)),
+        (Input::Mesh(mesh), _) => {
+            let making = making(max_error, diagonal(&mesh.vertices.positions));
+            cut_lines(mesh, &features(mesh, edges, edge_angle, max_error), &making)
+        }
         (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
         (Input::Cloud(_), Edges::Auto) => Vec::new(),
     };

@@ -19,8 +19,9 @@ const ROUNDS: usize = 8;
 
 /// A path of marked edges between vertices where not exactly two of them meet.
 #[derive(Clone, Debug)]
-struct Chain {
-    edges: Vec<u32>,
+pub struct Chain {
+    /// Its edges, in order.
+    pub edges: Vec<u32>,
     vertices: Vec<u32>,
     /// Whether an end meets no other marked edge.
     loose: bool,
@@ -78,7 +79,8 @@ fn is_ragged(positions: &[Vec3], chain: &Chain) -> bool {
 }
 
 /// All chains of marked edges, each once, in the order of their first edge.
-fn chains(vertices: usize, edges: &Edges, marked: &[bool]) -> Vec<Chain> {
+#[must_use]
+pub fn chains(vertices: usize, edges: &Edges, marked: &[bool]) -> Vec<Chain> {
     let mut around: Vec<(u32, u32)> = (edges.edges.iter().zip(marked).enumerate())
         .filter(|(_, (_, mark))| **mark)
         .flat_map(|(index, (edge, _))| edge.ends.map(|end| (end, index as u32)))

@@ -10,6 +10,7 @@ use super::refine::refine;
 use super::split::split;
 use super::surface::Surface;
 use super::weld::{Welded, weld};
+use super::worth::{Worth, drop_needless};
 use crate::model::mesh::Mesh;
 
 /// Which edges of a mesh are feature edges, beside its borders.
@@ -31,20 +32,43 @@ pub enum Features {
 /// What was found on the way, for the report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
-    /// Feature edges of the mesh before refinement.
+    /// Feature edges: those matched to given lines as the mesh has them, those found as refined.
     pub feature_edges: usize,
     /// What became of given lines.
     pub matched: Option<Matched>,
 }
 
-/// The surface of a mesh, its pieces no longer than `longest` (model units) unless that
-/// takes more than `most` of them.
+/// How a mesh becomes a surface.
+#[derive(Clone, Copy)]
+pub struct Making<'a> {
+    /// Pieces are no longer than this, model units, unless that takes more than `most` of them.
+    pub longest: f64,
+    /// The most pieces that refinement makes.
+    pub most: usize,
+    /// Which feature edges that are found are worth a cut.
+    pub worth: Worth<'a>,
+}
+
+/// The surface of a mesh, cut along feature edges.
 #[must_use]
-pub fn mesh_surface(mesh: &Mesh, features: &Features, longest: f64, most: usize) -> (Surface, Found) {
-    let welded = weld(mesh);
-    let (marked, found) = mark(&welded, features);
-    let (fine, marked) = refine(welded, marked, longest, most);
+pub fn mesh_surface(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Surface, Found) {
+    let (fine, marked, found) = marked(mesh, features, making);
     (split(&fine, &marked), found)
+}
+
+/// A mesh, refined; which of its edges are feature edges; and what was found.
+fn marked(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Welded, Vec<bool>, Found) {
+    let welded = weld(mesh);
+    let (marked, mut found) = mark(&welded, features);
+    let (fine, mut marked) = refine(welded, marked, making.longest, making.most);
+    if let Features::Sharp { shortest, .. } = features {
+        // Only now are there vertices enough on large facets to judge by.
+        let edges = Edges::of(&fine.triangles);
+        drop_needless(&fine, &edges, &making.worth, &mut marked);
+        chains::drop_short(&fine.positions, &edges, *shortest, &mut marked);
+        found.feature_edges = marked.iter().filter(|mark| **mark).count();
+    }
+    (fine, marked, found)
 }
 
 /// The lines that a mesh's surface is cut along, model units, each a segment of two points: its
@@ -53,13 +77,13 @@ pub fn mesh_surface(mesh: &Mesh, features: &Features, longest: f64, most: usize)
 /// Given segments are returned as they are, beside the borders: whether the mesh has an edge
 /// there or not.
 #[must_use]
-pub fn cut_lines(mesh: &Mesh, features: &Features) -> Vec<Vec<DVec3>> {
-    let welded = weld(mesh);
-    let edges = Edges::of(&welded.triangles);
-    let (marked, given) = match features {
-        Features::Given(segments) => (vec![false; edges.edges.len()], segments.as_slice()),
-        Features::Sharp { .. } | Features::None => (mark(&welded, features).0, [].as_slice()),
+pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<Vec<DVec3>> {
+    let (found, given) = match features {
+        Features::Given(segments) => (&Features::None, segments.as_slice()),
+        Features::Sharp { .. } | Features::None => (features, [].as_slice()),
     };
+    let (welded, marked, _) = marked(mesh, found, making);
+    let edges = Edges::of(&welded.triangles);
     let place = |v: u32| welded.positions[v as usize].as_dvec3();
     let cut = edges.edges.iter().zip(&marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
     let found = cut.map(|(edge, _)| edge.ends.map(place));

@@ -25,3 +25,4 @@ pub mod split;
 pub mod surface;
 pub mod thin;
 pub mod weld;
+pub mod worth;

@@ -152,6 +152,28 @@ pub fn principal(
     Principal { pose, curvature, rank: height.rank }
 }
 
+/// Distance along `k` of a place in splat coordinates from the quadric.
+#[must_use]
+pub fn miss(curvature: DVec2, local: DVec3) -> f64 {
+    let uv = local.truncate();
+    (local.z - (curvature * uv * uv).element_sum()).abs()
+}
+
+/// How far the farthest of some points lies, along `k`, from the quadric fitted to them; `normal`
+/// is about its normal. 0 for fewer than two points.
+#[must_use]
+pub fn misfit(points: &[DVec3], normal: DVec3) -> f64 {
+    let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+    let radius = points.iter().map(|point| point.distance(middle)).fold(0.0, f64::max);
+    if radius == 0.0 {
+        return 0.0;
+    }
+    let weighted = points.iter().map(|&point| (point, 1.0));
+    let Principal { pose, curvature, .. } =
+        principal(&Pose::at(middle, normal), &Fitting::within(radius), weighted);
+    points.iter().map(|&point| miss(curvature, pose.to_local(point))).fold(0.0, f64::max)
+}
+
 /// The curvature that a splat of these shapes keeps.
 fn kept(shapes: Shapes, curvature: DVec2) -> DVec2 {
     match shapes {

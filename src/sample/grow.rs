@@ -14,7 +14,7 @@ use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care};
 use crate::fit::ellipse::crossings;
-use crate::fit::pose::{Fitting, Pose, Principal, Shapes, principal};
+use crate::fit::pose::{Fitting, Pose, Principal, Shapes, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -101,12 +101,6 @@ pub(super) struct Domain {
     pub(super) rank: u8,
     /// How many points the ellipse reaches and the quadric covers.
     members: usize,
-}
-
-/// Distance along `k` of a place in splat coordinates from the quadric.
-fn miss(curvature: DVec2, local: DVec3) -> f64 {
-    let uv = local.truncate();
-    (local.z - (curvature * uv * uv).element_sum()).abs()
 }
 
 impl Grower<'_> {

@@ -1,0 +1,181 @@
+//! Which creases are worth a cut.
+//!
+//! An angle between two facets is a feature edge only if it goes on to either side: the bumps of
+//! a scan and the facets of a tube are as sharp. A splat that stops at a feature edge reaches
+//! farther than one that goes over it, and where it does not, a cut serves nothing.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::chains::{Chain, chains};
+use super::edges::{Edges, face_normals};
+use super::surface::NONE;
+use super::weld::Welded;
+
+/// How far the farthest of some points lies from a splat fitted to them, given about its normal.
+pub type Misfit<'a> = dyn Fn(&[DVec3], DVec3) -> f64 + Sync + 'a;
+
+/// What decides whether a crease is worth a cut.
+#[derive(Clone, Copy)]
+pub struct Worth<'a> {
+    /// Radius that a splat may be expected to reach on a smooth surface, model units.
+    pub reach: f64,
+    /// The error bound, model units.
+    pub max_error: f64,
+    /// How well a splat fits.
+    pub misfit: &'a Misfit<'a>,
+}
+
+/// Depths of the patches looked at on either side, as shares of the reach, the deepest first: the
+/// first that a splat fits decides.
+const DEPTHS: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// A patch over the crease, as wide as those beside it are deep, has this share of their depth for
+/// its radius: on a smooth surface all three fit about as well.
+const OVER: f64 = 0.5;
+
+/// A crease matters where a splat over it misses by more than this share of the bound.
+const LEAST_MISS: f64 = 0.25;
+
+/// A crease matters where a splat over it misses by this many times what those beside it do.
+const SHARPER: f64 = 2.0;
+
+/// Edges of a chain that are looked at, evenly spread; more than half of them decide.
+const LOOKED_AT: usize = 12;
+
+/// Unmarks the chains of feature edges that are not worth a cut.
+pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
+    let chains = chains(welded.positions.len(), edges, marked);
+    let mut chain_of = vec![NONE; edges.edges.len()];
+    for (number, chain) in (0_u32..).zip(&chains) {
+        chain.edges.iter().for_each(|&edge| chain_of[edge as usize] = number);
+    }
+    let patches = Patches {
+        welded,
+        edges,
+        sides: sides(edges, welded.triangles.len()),
+        normals: face_normals(&welded.positions, &welded.triangles),
+        chain_of,
+    };
+    let needless: Vec<bool> = chains
+        .par_iter()
+        .map_init(
+            || Visited::new(welded.triangles.len()),
+            |visited, chain| {
+                let every = chain.edges.len().div_ceil(LOOKED_AT);
+                let looked_at = chain.edges.iter().skip(every / 2).step_by(every);
+                let sharp = looked_at.clone().filter(|&&edge| patches.is_sharp(edge, worth, visited)).count();
+                2 * sharp <= looked_at.count()
+            },
+        )
+        .collect();
+    let drop = |chain: &Chain| chain.edges.iter().for_each(|&edge| marked[edge as usize] = false);
+    chains.iter().zip(needless).filter(|(_, needless)| *needless).map(|(chain, _)| chain).for_each(drop);
+}
+
+/// For each face, the edges along its sides.
+fn sides(edges: &Edges, faces: usize) -> Vec<[u32; 3]> {
+    let mut sides = vec![[NONE; 3]; faces];
+    for (index, edge) in (0_u32..).zip(&edges.edges) {
+        for half in edges.halves(edge) {
+            sides[half.face as usize][half.corner as usize] = index;
+        }
+    }
+    sides
+}
+
+/// Faces that a walk has met; reused from walk to walk.
+struct Visited {
+    stamps: Vec<u32>,
+    stamp: u32,
+}
+
+impl Visited {
+    fn new(faces: usize) -> Self {
+        Self { stamps: vec![0; faces], stamp: 0 }
+    }
+
+    fn clear(&mut self) {
+        if self.stamp == u32::MAX {
+            self.stamps.fill(0);
+            self.stamp = 0;
+        }
+        self.stamp += 1;
+    }
+
+    /// Marks a face; whether it was new.
+    fn mark(&mut self, face: u32) -> bool {
+        std::mem::replace(&mut self.stamps[face as usize], self.stamp) != self.stamp
+    }
+}
+
+/// Where patches are cut out of a mesh.
+struct Patches<'a> {
+    welded: &'a Welded,
+    edges: &'a Edges,
+    sides: Vec<[u32; 3]>,
+    normals: Vec<DVec3>,
+    /// For each edge, the chain it is part of, or [`NONE`].
+    chain_of: Vec<u32>,
+}
+
+/// What a patch is cut out for: where its middle is and how far it goes.
+#[derive(Clone, Copy)]
+struct Disc {
+    middle: DVec3,
+    radius: f64,
+    /// The chain that it goes over, or [`NONE`].
+    over: u32,
+}
+
+impl Patches<'_> {
+    /// Whether splats that stop at an edge reach farther than one that goes over it.
+    fn is_sharp(&self, index: u32, worth: &Worth<'_>, visited: &mut Visited) -> bool {
+        let edge = &self.edges.edges[index as usize];
+        let Some((left, right)) = self.edges.pair(edge) else { return true };
+        let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());
+        let middle = 0.5 * (a + b);
+        let mut misfit = |radius: f64, over: u32, faces: &[u32]| {
+            let (points, normal) = self.patch(&Disc { middle, radius, over }, faces, visited);
+            (worth.misfit)(&points, normal)
+        };
+        DEPTHS.iter().map(|share| share * worth.reach).find_map(|depth| {
+            let beside = [left.face, right.face].map(|face| misfit(depth, NONE, &[face]));
+            let beside = beside[0].max(beside[1]);
+            (beside <= worth.max_error).then(|| {
+                let over = misfit(OVER * depth, self.chain_of[index as usize], &[left.face, right.face]);
+                over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
+            })
+        }) == Some(true)
+    }
+
+    /// The vertices within a disc that the surface joins to some faces, ascending by index, and the
+    /// sum of its faces' normals.
+    fn patch(&self, disc: &Disc, from: &[u32], visited: &mut Visited) -> (Vec<DVec3>, DVec3) {
+        let near = |v: u32| {
+            self.welded.positions[v as usize].as_dvec3().distance_squared(disc.middle) <= disc.radius.powi(2)
+        };
+        visited.clear();
+        let mut open: Vec<u32> = from.iter().copied().filter(|&face| visited.mark(face)).collect();
+        let (mut vertices, mut normal) = (Vec::new(), DVec3::ZERO);
+        while let Some(face) = open.pop() {
+            let corners = self.welded.triangles[face as usize];
+            let before = vertices.len();
+            vertices.extend(corners.into_iter().filter(|&corner| near(corner)));
+            if vertices.len() == before {
+                continue;
+            }
+            normal += self.normals[face as usize];
+            for side in self.sides[face as usize] {
+                let chain = self.chain_of[side as usize];
+                if chain == NONE || chain == disc.over {
+                    let halves = self.edges.halves(&self.edges.edges[side as usize]);
+                    open.extend(halves.iter().map(|half| half.face).filter(|&other| visited.mark(other)));
+                }
+            }
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
+        (vertices.into_iter().map(|v| self.welded.positions[v as usize].as_dvec3()).collect(), normal)
+    }
+}
