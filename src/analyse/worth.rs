@@ -40,6 +40,13 @@ const LEAST_MISS: f64 = 0.25;
 /// A crease matters where a splat over it misses by this many times what those beside it do.
 const SHARPER: f64 = 2.0;
 
+/// A face whose normal is turned farther from the mean than this (cosine of 75°) cannot be part
+/// of one splat.
+const FOLDED: f64 = 0.26;
+
+/// Places along each side of a face that are looked at, less one.
+const LATTICE: u32 = 3;
+
 /// Edges of a chain that are looked at, evenly spread; more than half of them decide.
 const LOOKED_AT: usize = 12;
 
@@ -136,8 +143,8 @@ impl Patches<'_> {
         let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());
         let middle = 0.5 * (a + b);
         let mut misfit = |radius: f64, over: u32, faces: &[u32]| {
-            let (points, normal) = self.patch(&Disc { middle, radius, over }, faces, visited);
-            (worth.misfit)(&points, normal)
+            let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
+            patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
         };
         DEPTHS.iter().map(|share| share * worth.reach).find_map(|depth| {
             let beside = [left.face, right.face].map(|face| misfit(depth, NONE, &[face]));
@@ -149,23 +156,20 @@ impl Patches<'_> {
         }) == Some(true)
     }
 
-    /// The vertices within a disc that the surface joins to some faces, ascending by index, and the
-    /// sum of its faces' normals.
-    fn patch(&self, disc: &Disc, from: &[u32], visited: &mut Visited) -> (Vec<DVec3>, DVec3) {
-        let near = |v: u32| {
-            self.welded.positions[v as usize].as_dvec3().distance_squared(disc.middle) <= disc.radius.powi(2)
-        };
+    /// Places within a disc on the faces that the surface joins to some, and the mean of those
+    /// faces' normals; `None` if it folds over.
+    fn patch(&self, disc: &Disc, from: &[u32], visited: &mut Visited) -> Option<(Vec<DVec3>, DVec3)> {
         visited.clear();
         let mut open: Vec<u32> = from.iter().copied().filter(|&face| visited.mark(face)).collect();
-        let (mut vertices, mut normal) = (Vec::new(), DVec3::ZERO);
+        let (mut places, mut normals) = (Vec::new(), Vec::new());
         while let Some(face) = open.pop() {
-            let corners = self.welded.triangles[face as usize];
-            let before = vertices.len();
-            vertices.extend(corners.into_iter().filter(|&corner| near(corner)));
-            if vertices.len() == before {
+            let before = places.len();
+            let near = |place: &DVec3| place.distance_squared(disc.middle) <= disc.radius * disc.radius;
+            places.extend(self.lattice(face).filter(near));
+            if places.len() == before {
                 continue;
             }
-            normal += self.normals[face as usize];
+            normals.push(self.normals[face as usize]);
             for side in self.sides[face as usize] {
                 let chain = self.chain_of[side as usize];
                 if chain == NONE || chain == disc.over {
@@ -174,8 +178,21 @@ impl Patches<'_> {
                 }
             }
         }
-        vertices.sort_unstable();
-        vertices.dedup();
-        (vertices.into_iter().map(|v| self.welded.positions[v as usize].as_dvec3()).collect(), normal)
+        let mean = normals.iter().sum::<DVec3>().normalize_or_zero();
+        let folds = normals.iter().any(|&normal| normal != DVec3::ZERO && normal.dot(mean) < FOLDED);
+        (!folds).then_some((places, mean))
+    }
+
+    /// Places spread over a face, its corners among them: a facet has no vertices inside, and may
+    /// be as large as the patch.
+    fn lattice(&self, face: u32) -> impl Iterator<Item = DVec3> {
+        let [a, b, c] =
+            self.welded.triangles[face as usize].map(|v| self.welded.positions[v as usize].as_dvec3());
+        (0..=LATTICE).flat_map(move |i| {
+            (0..=LATTICE - i).map(move |j| {
+                let [s, t] = [i, j].map(|n| f64::from(n) / f64::from(LATTICE));
+                a + s * (b - a) + t * (c - a)
+            })
+        })
     }
 }
