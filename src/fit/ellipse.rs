@@ -74,6 +74,24 @@ pub fn runs(line: &[DVec2], closed: bool, radii: DVec2) -> Option<Vec<Run>> {
     Some(found)
 }
 
+/// Steiner's ellipse, the least through three points, whose mean is its centre: the angle from
+/// `u` to its first axis, and its radii.
+///
+/// With `S` the second moments of the corners it is `xᵀ S⁻¹ x = 2`.
+#[must_use]
+pub fn circumellipse(corners: [DVec2; 3]) -> (f64, DVec2) {
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for uv in corners {
+        xx += uv.x * uv.x / 3.0;
+        xy += uv.x * uv.y / 3.0;
+        yy += uv.y * uv.y / 3.0;
+    }
+    let theta = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+    let (mean, half) = (0.5 * (xx + yy), 0.5 * libm::hypot(xx - yy, 2.0 * xy));
+    let radii = DVec2::new(mean + half, (mean - half).max(0.0)).map(|moment| (2.0 * moment).sqrt());
+    (theta, radii)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,6 +109,16 @@ mod tests {
             }
         }
         assert!(runs(&line[1..], false, radii).is_none(), "begins inside");
+    }
+
+    #[test]
+    fn the_circumellipse_passes_through_the_corners() {
+        let corners = [(2.0, 0.3), (-1.5, 0.1), (-0.5, -0.4)].map(DVec2::from);
+        let (theta, radii) = circumellipse(corners);
+        for corner in corners {
+            let turned = DVec2::from_angle(-theta).rotate(corner);
+            assert!(((turned / radii).length() - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care};
-use crate::fit::ellipse::crossings;
+use crate::fit::ellipse::{circumellipse, crossings};
 use crate::fit::pose::{Fitting, Pose, Principal, Shapes, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
@@ -34,6 +34,10 @@ const LEAST_MARGINS: f64 = 1.2;
 
 /// More clip curves than this on one splat cost more than a second splat would.
 const MOST_CLIPS: usize = 8;
+
+/// The least domain around a triangle goes on beyond its corners by this factor: they must lie
+/// inside whatever is rounded.
+const LEAST_OUTSET: f64 = 1.01;
 
 /// No radius grows beyond this, in model units: the model lies within `[-1, 1]³`.
 const LONGEST_RADIUS: f64 = 4.0;
@@ -108,10 +112,11 @@ impl Grower<'_> {
     /// not keep the budget.
     pub fn grow(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
         let seeds = self.surface.pieces[piece as usize];
-        let (pose, least) = self.start(piece);
-        let least = self.attempt(&pose, DVec2::splat(least), &seeds, region).ok()?;
-        let best = self.enlarged(least, &seeds, region);
-        settle(self, best, &seeds, piece, region)
+        self.starts(piece).into_iter().find_map(|(pose, radii)| {
+            let least = self.attempt(&pose, radii, &seeds, region).ok()?;
+            let best = self.enlarged(least, &seeds, region);
+            settle(self, best, &seeds, piece, region)
+        })
     }
 
     /// A domain grown as long as it keeps the budget and reaches more of the surface.
@@ -146,16 +151,19 @@ impl Grower<'_> {
         best
     }
 
-    /// A pose at the middle of a piece and the least radius worth trying.
-    fn start(&self, piece: u32) -> (Pose, f64) {
+    /// Poses at the middle of a piece, each with the least radii worth trying: first a disc, then,
+    /// for a triangle, an ellipse as slender as it is. Beside a fold the disc may be too wide.
+    fn starts(&self, piece: u32) -> [(Pose, DVec2); 2] {
         let corners = self.surface.pieces[piece as usize];
-        let middle = self.surface.middle(piece);
         let normal: DVec3 = corners.iter().map(|&corner| self.surface.normal(corner)).sum();
-        let reach = corners.iter().map(|&c| self.surface.point(c).distance(middle)).fold(0.0, f64::max);
+        let pose = Pose::at(self.surface.middle(piece), normal);
+        let flat = corners.map(|corner| pose.to_local(self.surface.point(corner)).truncate());
+        let reach = flat.iter().map(|uv| uv.length()).fold(0.0, f64::max);
+        let (theta, radii) = circumellipse(flat);
         let margin = self.surface.piece_margin(piece);
-        // A little more than the piece, which must lie inside whatever is rounded.
-        let least = (reach * 1.01).max(LEAST_MARGINS * margin).max(LEAST_SHARE * self.budget.fit);
-        (Pose::at(middle, normal), least)
+        let floor = (LEAST_MARGINS * margin).max(LEAST_SHARE * self.budget.fit);
+        let least = |radii: DVec2| (LEAST_OUTSET * radii).max(DVec2::splat(floor));
+        [(pose, least(DVec2::splat(reach))), (pose.turned(theta), least(radii))]
     }
 
     /// Fits a splat to what an ellipse reaches; why not, if it does not keep the budget.
