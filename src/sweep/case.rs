@@ -9,7 +9,7 @@ use crate::bake::{Edges, Options, Silent, feature_lines};
 use crate::deliver::deliver;
 use crate::error::{Error, Result};
 use crate::ingest::Input;
-use crate::measure::{self, measure};
+use crate::measure::{self, Reference, measure};
 use crate::model::asset::Asset;
 use crate::model::frame::Frame;
 use crate::render::camera::{Framing, View};
@@ -23,16 +23,18 @@ pub(super) const FRAME_SIZE: [u32; 2] = [512, 512];
 const PICTURE_SIZE: [u32; 2] = [280, 280];
 
 /// An input as its cases share it.
-pub(super) struct Subject {
-    pub(super) input: Input,
+pub(super) struct Subject<'a> {
+    pub(super) input: &'a Input,
     pub(super) edges: Edges,
+    /// What every case is measured against.
+    pub(super) reference: Reference<'a>,
 }
 
 /// PNGs of a case: shaded, and each splat in a colour of its own.
 pub(super) type Pictures = [Vec<u8>; 2];
 
 /// Runs a case. Whatever goes wrong is its message: the other cases go on.
-pub(super) fn run(subject: &Subject, setting: &Setting, frames: usize) -> (Case, Option<Pictures>) {
+pub(super) fn run(subject: &Subject<'_>, setting: &Setting, frames: usize) -> (Case, Option<Pictures>) {
     let outcome = catch_unwind(AssertUnwindSafe(|| outcome(subject, setting, frames)));
     // A panic is a bug of ours, and has been told by the program's hook.
     let outcome = outcome.unwrap_or_else(|_| Err(Error::Internal("the case panicked".into())));
@@ -51,15 +53,15 @@ pub(super) fn run(subject: &Subject, setting: &Setting, frames: usize) -> (Case,
     (case, pictures)
 }
 
-fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outcome, Pictures)> {
+fn outcome(subject: &Subject<'_>, setting: &Setting, frames: usize) -> Result<(Outcome, Pictures)> {
     let options = Options { edges: subject.edges.clone(), ..setting.options() };
-    let delivery = deliver(&subject.input, &options, &mut Silent)?;
+    let delivery = deliver(subject.input, &options, &mut Silent)?;
     let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
-    let lines = feature_lines(&subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
+    let lines = feature_lines(subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
     let measures = measure(&measure::Subject {
         bytes: &delivery.bytes,
         asset: &delivery.asset,
-        against: model(&subject.input),
+        against: &subject.reference,
         lines: lines.as_deref(),
     })?;
     let outcome = Outcome {
