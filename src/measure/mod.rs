@@ -7,6 +7,8 @@ mod box_tree;
 mod climb;
 mod cloud_fit;
 pub mod cost;
+#[cfg(test)]
+pub(crate) mod documented;
 pub mod edge;
 mod feet;
 pub mod fit;

@@ -109,11 +109,11 @@ pub fn seen(asset: &Asset, inputs: &[Drawn]) -> Result<Seen> {
     let mean = |part: &dyn Fn(&Scores) -> f64| scores.iter().map(part).sum::<f64>() / count;
     let sum = |part: &dyn Fn(&ViewMeasures) -> u64| scores.iter().map(|scores| part(&scores.view)).sum();
     let image = Image {
-        flip_mean: mean(&|s| s.view.flip_mean),
-        flip_p99: scores.iter().map(|s| s.view.flip_p99).fold(0.0, f64::max),
+        flip_mean: mean(&|s| s.view.image.flip_mean),
+        flip_p99: scores.iter().map(|s| s.view.image.flip_p99).fold(0.0, f64::max),
         psnr: decibels(mean(&|s| s.mean_square)),
-        ssim: mean(&|s| s.view.ssim),
-        normal_flip_mean: mean(&|s| s.view.normal_flip_mean),
+        ssim: mean(&|s| s.view.image.ssim),
+        normal_flip_mean: mean(&|s| s.view.image.normal_flip_mean),
     };
     let holes = Holes {
         missing: sum(&|view| view.missing),
@@ -147,11 +147,13 @@ impl Scores {
             extra: splats.holes.count(Mark::Extra),
             through: splats.holes.count(Mark::Through),
             pixels: splats.holes.compared(),
-            flip_mean: flip.mean(),
-            flip_p99: flip.quantile(0.99),
-            psnr: decibels(mean_square),
-            ssim: difference::ssim(&input.shaded, &splats.shaded)?,
-            normal_flip_mean: normals?.mean(),
+            image: Image {
+                flip_mean: flip.mean(),
+                flip_p99: flip.quantile(0.99),
+                psnr: decibels(mean_square),
+                ssim: difference::ssim(&input.shaded, &splats.shaded)?,
+                normal_flip_mean: normals?.mean(),
+            },
         };
         Ok(Self { view, mean_square, fragments: splats.fragments })
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
 use crate::bake::{Edges, Options, Silent, feature_lines};
-use crate::deliver::deliver;
+use crate::deliver::{deliver, model};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
 use crate::measure::{self, Reference, measure};
@@ -73,14 +73,6 @@ fn outcome(subject: &Subject<'_>, setting: &Setting, frames: usize) -> Result<(O
     };
     let pictures = [draw_asset(&delivery.asset, Show::Shaded)?, draw_asset(&delivery.asset, Show::Splats)?];
     Ok((outcome, pictures))
-}
-
-/// The input as what is drawn and measured against.
-pub(super) fn model(input: &Input) -> input::Model<'_> {
-    match input {
-        Input::Mesh(mesh) => input::Model::Mesh(mesh),
-        Input::Cloud(cloud) => input::Model::Cloud(cloud),
-    }
 }
 
 /// Milliseconds of one frame on the CPU reference: the median.

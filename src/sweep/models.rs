@@ -12,6 +12,7 @@ use super::pictures::Shown;
 use super::plan::{Lines, Plan, Setting};
 use super::schema::{Case, Model};
 use crate::bake::Edges;
+use crate::deliver;
 use crate::error::Result;
 use crate::ingest::{self, Input};
 use crate::measure::Reference;
@@ -23,7 +24,7 @@ pub(super) fn sweep(path: &Path, plan: &Plan, watch: &mut dyn FnMut(&Event<'_>))
     let read = read(path, plan);
     model.read_seconds = start.elapsed().as_secs_f64();
     let subject = read.as_ref().map_err(ToString::to_string).and_then(|(input, edges)| {
-        let reference = Reference::new(case::model(input)).map_err(|error| error.to_string())?;
+        let reference = Reference::new(deliver::model(input)).map_err(|error| error.to_string())?;
         Ok(Subject { input, edges: edges.clone(), reference })
     });
     let subject = match subject {

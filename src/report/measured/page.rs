@@ -44,12 +44,12 @@ pub fn write_page(
 ) -> Result<PathBuf> {
     std::fs::create_dir_all(directory).map_err(crate::Error::io(directory))?;
     format::write_file(&directory.join("measures.json"), measures.json()?.as_bytes())?;
-    let greatest = measures.views.iter().map(|view| view.flip_mean).fold(0.0, f64::max);
+    let greatest = measures.views.iter().map(|view| view.image.flip_mean).fold(0.0, f64::max);
     let mut sections = Vec::with_capacity(measures.views.len());
     for (input, found) in reference.drawn.iter().zip(&measures.views) {
         let mut section = section(found);
         // Of several views with the greatest difference, the first is enough; none may have any.
-        let worst = found.flip_mean >= greatest && greatest > 0.0;
+        let worst = found.image.flip_mean >= greatest && greatest > 0.0;
         if faulty(found) || found.through > 0 || worst {
             illustrate(&mut section, input, &seen::compare(asset, input)?, directory)?;
         }
@@ -90,11 +90,11 @@ fn section(view: &ViewMeasures) -> page::View {
             none("missing", view.missing),
             none("extra", view.extra),
             told("through", view.through.to_string()),
-            told("FLIP mean", format!("{:.5}", view.flip_mean)),
-            told("FLIP p99", format!("{:.4}", view.flip_p99)),
-            told("PSNR", format!("{:.1} dB", view.psnr)),
-            told("SSIM", format!("{:.4}", view.ssim)),
-            told("normals FLIP", format!("{:.5}", view.normal_flip_mean)),
+            told("FLIP mean", format!("{:.5}", view.image.flip_mean)),
+            told("FLIP p99", format!("{:.4}", view.image.flip_p99)),
+            told("PSNR", format!("{:.1} dB", view.image.psnr)),
+            told("SSIM", format!("{:.4}", view.image.ssim)),
+            told("normals FLIP", format!("{:.5}", view.image.normal_flip_mean)),
         ],
         ..page::View::default()
     }
