@@ -12,10 +12,8 @@ use super::pictures::Shown;
 use super::plan::{Lines, Plan, Setting};
 use super::schema::{Case, Model};
 use crate::bake::Edges;
-use crate::deliver;
 use crate::error::Result;
 use crate::ingest::{self, Input};
-use crate::measure::Reference;
 
 /// Reads an input and runs all its cases.
 pub(super) fn sweep(path: &Path, plan: &Plan, watch: &mut dyn FnMut(&Event<'_>)) -> (Model, Shown) {
@@ -23,10 +21,10 @@ pub(super) fn sweep(path: &Path, plan: &Plan, watch: &mut dyn FnMut(&Event<'_>))
     let start = Instant::now();
     let read = read(path, plan);
     model.read_seconds = start.elapsed().as_secs_f64();
-    let subject = read.as_ref().map_err(ToString::to_string).and_then(|(input, edges)| {
-        let reference = Reference::new(deliver::model(input)).map_err(|error| error.to_string())?;
-        Ok(Subject { input, edges: edges.clone(), reference })
-    });
+    let subject = read
+        .as_ref()
+        .map_err(ToString::to_string)
+        .and_then(|(input, edges)| Subject::new(input, edges.clone()).map_err(|error| error.to_string()));
     let subject = match subject {
         Ok(subject) => subject,
         Err(failure) => {
@@ -40,7 +38,7 @@ pub(super) fn sweep(path: &Path, plan: &Plan, watch: &mut dyn FnMut(&Event<'_>))
     };
     model.kind = Some(kind.into());
     (model.points, model.triangles) = (subject.input.cloud().positions.len() as u64, triangles as u64);
-    let mut shown = Shown { input: case::draw_input(subject.input).ok(), cases: Vec::new() };
+    let mut shown = Shown { input: case::draw_input(&subject).ok(), cases: Vec::new() };
     let mut add = |settings: &[Setting], model: &mut Model| {
         for (case, pictures) in run_all(&subject, settings, plan, &model.name, watch) {
             model.cases.push(case);

@@ -143,17 +143,31 @@ pub(super) fn exponents(model: &Model, curves: &[Curve<'_>]) -> String {
     )
 }
 
+/// What theory expects of the number of splats.
 fn expectation(slope: f64) -> String {
-    if (slope - axis::EXPECTED[0]).abs() < 1e-9 {
-        "−1".into()
+    let [planes, smooth, sphere] = axis::EXPECTED.map(exponent);
+    if exponent(slope) == planes {
+        planes
     } else {
-        "−⅔ on a smooth surface, −½ on a sphere".into()
+        format!("{smooth} on a smooth surface, {sphere} on a sphere")
     }
 }
 
+/// An expected exponent as a fraction.
+pub(super) fn exponent(slope: f64) -> String {
+    let close = |other: f64| (slope - other).abs() < SAME_EXPONENT;
+    let known = [(-1.0, "−1"), (-2.0 / 3.0, "−⅔"), (-0.5, "−½")];
+    known.iter().find(|(other, _)| close(*other)).map_or_else(|| signed(slope), |known| known.1.into())
+}
+
+/// Exponents apart by less than this are one, read from a report where they were rounded.
+const SAME_EXPONENT: f64 = 1e-9;
+
 /// Two decimals, with a minus sign that is as wide as a plus.
 pub(super) fn signed(value: f64) -> String {
-    format!("{value:.2}").replace('-', "−")
+    let text = format!("{value:.2}");
+    // A zero has no sign.
+    if text == "-0.00" { "0.00".into() } else { text.replace('-', "−") }
 }
 
 #[cfg(test)]
@@ -171,5 +185,7 @@ mod tests {
             assert_eq!(significant(value), text);
         }
         assert_eq!(signed(-0.666), "−0.67");
+        assert_eq!([signed(-0.004), signed(0.004), signed(-0.005_01)], ["0.00", "0.00", "−0.01"]);
+        assert_eq!([-1.0, -2.0 / 3.0, -0.5, -0.4].map(exponent), ["−1", "−⅔", "−½", "−0.40"]);
     }
 }
