@@ -5,7 +5,6 @@ use std::error::Error as StdError;
 use plotters::chart::ChartContext;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::error::{Error, Result};
 
@@ -18,14 +17,8 @@ const TEXT: u32 = 32;
 /// Colour of text and axes.
 const INK: RGBColor = RGBColor(40, 40, 40);
 
-/// Colour of guides and their labels.
+/// Colour of guides.
 const FAINT: RGBColor = RGBColor(120, 120, 120);
-
-/// Labels of guides begin at their place and stand above it.
-const ABOVE: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Bottom };
-
-/// Between a guide's end and its label, pixels.
-const LABEL_GAP: i32 = 4;
 
 /// One curve.
 #[derive(Clone, Debug)]
@@ -107,12 +100,10 @@ pub(super) fn log_log(labels: [&str; 2], lines: &[Line], guides: &[Guide]) -> Re
 }
 
 /// A dashed line of a known exponent through the middle of the chart.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Guide {
     /// `y ~ x^slope`.
     pub(super) slope: f64,
-    /// What it is called at its left end, where falling lines lie apart.
-    pub(super) label: String,
 }
 
 fn logarithms(line: &Line) -> Line {
@@ -151,13 +142,7 @@ fn draw(svg: &mut String, labels: [&str; 2], lines: &[Line], guides: &[Guide]) -
             .map(|n| at(x.0 + (x.1 - x.0) * f64::from(n) / 200.0))
             .filter(|p| (y.0..=y.1).contains(&p.1))
             .collect();
-        let start = path.first().copied();
         chart.draw_series(DashedLineSeries::new(path, 4, 8, FAINT.stroke_width(2)))?;
-        let style = ("sans-serif", TEXT).into_font().color(&FAINT).pos(ABOVE);
-        let label = |at: (f64, f64)| {
-            EmptyElement::at(at) + Text::new(guide.label.clone(), (LABEL_GAP, -LABEL_GAP), style.clone())
-        };
-        chart.draw_series(start.map(label))?;
     }
     for line in lines {
         curve(&mut chart, line)?;

@@ -11,7 +11,7 @@ use super::bars::{self, Bar};
 use super::chart::{self, Guide, Line, Look, Mark, log_log};
 use super::pictures::{Album, Shown};
 use super::schema::{Case, Model, Outcome, Sweep};
-use super::table::{exponent, exponents, grouped, percent, settings, signed, significant, variant_name};
+use super::table::{exponents, grouped, percent, settings, signed, significant, variant_name};
 use crate::error::Result;
 use crate::report::page::escape;
 
@@ -139,13 +139,13 @@ fn scaling(html: &mut String, model: &Model, curves: &[Curve<'_>]) -> Result<()>
         points: curve.pairs(&BUDGET, &SPLATS).into_iter().map(|(x, y)| (x, y, false)).collect(),
     };
     let lines: Vec<Line> = curves.iter().zip(&looks).map(line).collect();
-    let guides = EXPECTED.map(|slope| Guide { slope, label: exponent(slope) });
+    let guides = EXPECTED.map(|slope| Guide { slope });
     let Some(svg) = log_log([BUDGET.label, SPLATS.label], &lines, &guides)? else { return Ok(()) };
     let _ = writeln!(
         html,
         "<h3>Growth as the budget falls</h3>\n<div class=\"growth\">\n<figure>{svg}<figcaption>Dotted: the \
          expected exponents −1 (planes, and triangles), −⅔ (quadrics on a smooth surface) and −½ (quadrics on \
-         a sphere), each through the middle of the chart.</figcaption></figure>\n<div>\n<p class=\"note\">Fitted exponents \
+         a sphere), from steep to shallow.</figcaption></figure>\n<div>\n<p class=\"note\">Fitted exponents \
          <i>s</i> of cost ~ budget<sup><i>s</i></sup>:</p>\n{}</div>\n</div>",
         exponents(model, curves)
     );

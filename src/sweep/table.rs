@@ -45,13 +45,13 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// Digits in groups of three, apart by thin spaces.
+/// Digits in groups of three, apart by narrow spaces that keep a number on one line.
 pub(super) fn grouped(value: u64) -> String {
     let digits = value.to_string();
     let mut out = String::new();
     for (n, digit) in digits.chars().enumerate() {
         if n > 0 && (digits.len() - n).is_multiple_of(3) {
-            out.push('\u{2009}');
+            out.push('\u{202f}');
         }
         out.push(digit);
     }
@@ -154,7 +154,7 @@ fn expectation(slope: f64) -> String {
 }
 
 /// An expected exponent as a fraction.
-pub(super) fn exponent(slope: f64) -> String {
+fn exponent(slope: f64) -> String {
     let close = |other: f64| (slope - other).abs() < SAME_EXPONENT;
     let known = [(-1.0, "−1"), (-2.0 / 3.0, "−⅔"), (-0.5, "−½")];
     known.iter().find(|(other, _)| close(*other)).map_or_else(|| signed(slope), |known| known.1.into())
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn numbers_read_well() {
         assert_eq!(grouped(7), "7");
-        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
+        assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!(grouped(123), "123");
         for (value, text) in
             [(0.012_345, "0.0123"), (1.5, "1.50"), (12.34, "12.3"), (1234.5, "1234"), (0.0, "0")]
