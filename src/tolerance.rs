@@ -35,8 +35,13 @@ pub const CLIP_MISS_SHARE: f64 = 0.3;
 /// Share of the budget by which rounding may move a clip curve.
 pub const CLIP_QUANTIZE_SHARE: f64 = 0.1;
 
-/// Tessellations stay within this share of the budget of the surface they stand for.
+/// Tessellations stay within this share of the budget of the surface they stand for, unless
+/// another is asked for.
 pub const EXPORT_SHARE: f64 = 0.1;
+
+/// Shares of the budget that can be asked for: what strays more than the splats themselves may
+/// does not stand for them, and a thousandth is below the rounding to the file's grids.
+pub const EXPORT_SHARES: std::ops::RangeInclusive<f64> = 1e-3..=1.0;
 
 /// Default dihedral angle, degrees, from which a mesh edge is a feature edge.
 pub const DEFAULT_EDGE_ANGLE: f64 = 40.0;

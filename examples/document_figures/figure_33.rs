@@ -6,12 +6,13 @@ use qsplat::analyse::cloud_normals::{NormalSource, normals, plane};
 use qsplat::analyse::distinct::distinct;
 use qsplat::analyse::nearest::Search;
 use qsplat::fit::pose::{Fitting, Pose, principal};
-use qsplat::{Error, Result};
+use qsplat::{Result, deliver};
 use rayon::prelude::*;
 
 use super::models::or_fixture;
 use super::page::Page;
 use super::plot::Plot;
+use super::search::tree;
 
 /// Radii, shares of the diagonal. The thesis does not say which one it took.
 const RADII: [f64; 6] = [0.005, 0.01, 0.015, 0.02, 0.03, 0.04];
@@ -110,14 +111,9 @@ fn head(input: &qsplat::ingest::Input) -> Result<Head> {
     let points = distinct(input.cloud());
     let nearest = Search::new(&points.positions)?.nearest();
     let normals = normals(&points, &nearest, NormalSource::Auto)?.normals;
-    let raw: Vec<[f32; 3]> = points.positions.iter().map(Vec3::to_array).collect();
-    let tree = ImmutableKdTree::new_from_slice(&raw)
-        .map_err(|error| Error::Internal(format!("the search tree refused the points: {error:?}")))?;
-    let (low, high) = points
-        .positions
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p.as_dvec3()), b.max(p.as_dvec3())));
-    Ok(Head { points: points.positions, normals, tree, diagonal: (high - low).length() })
+    let tree = tree(&points.positions)?;
+    let diagonal = deliver::model(input).diagonal();
+    Ok(Head { points: points.positions, normals, tree, diagonal })
 }
 
 /// Means over all splats with enough points; how many those are, and their mean number of points.

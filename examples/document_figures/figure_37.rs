@@ -2,8 +2,7 @@
 
 use std::time::Instant;
 
-use glam::DVec3;
-use qsplat::Result;
+use qsplat::{Result, deliver};
 
 use super::models::{mesh, or_fixture};
 use super::page::Page;
@@ -34,11 +33,7 @@ pub fn make(page: &mut Page) -> Result<()> {
     let begin = Instant::now();
     let cloud = Cloud::new(&scattered)?;
     let tree_seconds = begin.elapsed().as_secs_f64();
-    let (low, high) =
-        mesh.vertices.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| {
-            (a.min(p.as_dvec3()), b.max(p.as_dvec3()))
-        });
-    let diagonal = (high - low).length();
+    let diagonal = deliver::model(&model.input).diagonal();
     let rows: Vec<Row> = RADII.iter().map(|&share| row(&cloud, share, diagonal)).collect();
     page.section("T Figure 37: uniform sampling against the radius");
     page.say(&format!(

@@ -14,6 +14,7 @@ mod models;
 mod page;
 mod plot;
 mod scatter;
+mod search;
 mod table_1;
 mod table_2;
 mod uniform;

@@ -7,14 +7,15 @@
 
 use std::cmp::Ordering;
 
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use qsplat::Result;
 use qsplat::analyse::canonical::mix;
 use qsplat::fit::pose::Pose;
-use qsplat::{Error, Result};
 
 use super::hull::hull;
 use super::scatter::Scattered;
+use super::search::tree;
 
 /// Normals that make a smaller cosine (60°) belong to another sheet of the surface.
 const FACING: f32 = 0.5;
@@ -37,12 +38,9 @@ impl<'a> Cloud<'a> {
     /// Builds the search tree.
     ///
     /// # Errors
-    /// [`Error::Internal`] should the tree refuse the points.
+    /// [`qsplat::Error::Internal`] should the tree refuse the points.
     pub fn new(scattered: &'a Scattered) -> Result<Self> {
-        let points: Vec<[f32; 3]> = scattered.points.iter().map(Vec3::to_array).collect();
-        let tree = ImmutableKdTree::new_from_slice(&points)
-            .map_err(|error| Error::Internal(format!("the search tree refused the points: {error:?}")))?;
-        Ok(Self { scattered, tree })
+        Ok(Self { scattered, tree: tree(&scattered.points)? })
     }
 
     /// Covers all points by splats of no more than this radius (model units).

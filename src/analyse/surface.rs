@@ -18,13 +18,7 @@ impl Rows {
     pub fn from_pairs(rows: usize, mut pairs: Vec<(u32, u32)>) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
-        let mut starts = vec![0_u32; rows + 1];
-        for &(row, _) in &pairs {
-            starts[row as usize + 1] += 1;
-        }
-        for row in 0..rows {
-            starts[row + 1] += starts[row];
-        }
+        let starts = starts(rows, pairs.iter().map(|&(row, _)| row));
         Self { starts, items: pairs.into_iter().map(|(_, item)| item).collect() }
     }
 
@@ -35,34 +29,18 @@ impl Rows {
     pub fn symmetric<I: Iterator<Item = u32>>(rows: u32, listed: impl Fn(u32) -> I) -> Self {
         // Pairs would take several times the memory of the rows they become.
         let missing = |row: u32, other: u32| !listed(other).any(|back| back == row);
-        let mut starts = vec![0_u32; rows as usize + 1];
-        for row in 0..rows {
-            for other in listed(row) {
-                starts[row as usize + 1] += 1;
-                starts[other as usize + 1] += u32::from(missing(row, other));
-            }
-        }
-        for row in 0..rows as usize {
-            starts[row + 1] += starts[row];
-        }
-        let mut items = vec![0_u32; starts[rows as usize] as usize];
-        let mut ends = starts.clone();
-        let mut put = |row: u32, item: u32| {
-            items[ends[row as usize] as usize] = item;
-            ends[row as usize] += 1;
+        let one_way = || (0..rows).flat_map(|row| listed(row).map(move |other| (row, other)));
+        let pairs = || {
+            one_way().flat_map(|(row, other)| {
+                let back = missing(row, other).then_some((other, row));
+                [(row, other)].into_iter().chain(back)
+            })
         };
-        for row in 0..rows {
-            for other in listed(row) {
-                put(row, other);
-                if missing(row, other) {
-                    put(other, row);
-                }
-            }
-        }
+        let mut sorted = Self::placed(rows as usize, pairs);
         for row in 0..rows as usize {
-            items[starts[row] as usize..starts[row + 1] as usize].sort_unstable();
+            sorted.items[sorted.starts[row] as usize..sorted.starts[row + 1] as usize].sort_unstable();
         }
-        Self { starts, items }
+        sorted
     }
 
     /// `rows` rows, the first `count` of which hold their own number, the others nothing.
@@ -74,15 +52,14 @@ impl Rows {
     /// Rows of the indices of `owner`, each in the row that it names.
     #[must_use]
     pub fn grouped(rows: usize, owner: &[u32]) -> Self {
-        let mut starts = vec![0_u32; rows + 1];
-        for &row in owner {
-            starts[row as usize + 1] += 1;
-        }
-        for row in 0..rows {
-            starts[row + 1] += starts[row];
-        }
-        let (mut items, mut ends) = (vec![0_u32; owner.len()], starts.clone());
-        for (item, &row) in (0_u32..).zip(owner) {
+        Self::placed(rows, || owner.iter().copied().zip(0_u32..))
+    }
+
+    /// Rows of `(row, item)` pairs, each row in their order; `pairs` is gone through twice.
+    fn placed<I: Iterator<Item = (u32, u32)>>(rows: usize, pairs: impl Fn() -> I) -> Self {
+        let starts = starts(rows, pairs().map(|(row, _)| row));
+        let (mut items, mut ends) = (vec![0_u32; starts[rows] as usize], starts.clone());
+        for (row, item) in pairs() {
             items[ends[row as usize] as usize] = item;
             ends[row as usize] += 1;
         }
@@ -112,6 +89,18 @@ impl Rows {
         let row = row as usize;
         &self.items[self.starts[row] as usize..self.starts[row + 1] as usize]
     }
+}
+
+/// Where each row starts, and the last ends, if they hold one item each time they are named.
+fn starts(rows: usize, named: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut starts = vec![0_u32; rows + 1];
+    for row in named {
+        starts[row as usize + 1] += 1;
+    }
+    for row in 0..rows {
+        starts[row + 1] += starts[row];
+    }
+    starts
 }
 
 /// A point of a cloud that a splat has to cover.

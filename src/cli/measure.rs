@@ -1,6 +1,6 @@
 //! `qsplat measure`: every error and cost of a file against its input.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
@@ -10,10 +10,9 @@ use qsplat::error::{Error, Result};
 use qsplat::format;
 use qsplat::ingest::Input;
 use qsplat::measure::measures::GpuFrame;
-use qsplat::measure::{self, Measures, Subject, cost, views};
+use qsplat::measure::{self, Measures, Reference, Subject, align, cost};
 use qsplat::model::asset::Asset;
 use qsplat::render::device::Choice;
-use qsplat::render::input::Model;
 use qsplat::report::measured;
 use qsplat::tolerance::DEFAULT_EDGE_ANGLE;
 
@@ -64,16 +63,20 @@ impl Arguments {
         let bytes = format::read_bytes(&self.file, &format::Limits::default())?;
         let asset = source::asset(&self.file)?;
         let input = source::input(&self.against)?;
+        let aligned = align::align(model(&input), &asset)?;
         let mut progress = self.progress.teller(notes.quiet, notes.out);
         progress.stage("lines");
         let lines = self.lines(&asset, &input)?;
-        let against = model(&input);
-        let subject = Subject { bytes: &bytes, asset: &asset, against, lines: lines.as_deref() };
+        let lines = lines.as_ref().map(|lines| align::lines(lines, &input.cloud().frame, &asset.frame));
+        progress.stage("reference");
+        let reference = Reference::new(aligned.model())?;
+        let subject = Subject { bytes: &bytes, asset: &asset, against: &reference, lines: lines.as_deref() };
         let mut measures = measure::measure_telling(&subject, &mut |stage| progress.stage(stage))?;
         drop(progress);
-        measures.cost.gpu = self.gpu(&asset, subject.against, notes)?;
+        measures.cost.gpu = self.gpu(&asset, &reference, notes)?;
         if let Some(directory) = &self.report {
-            let page = measured::write_page(&measures, &subject, [&self.file, &self.against], directory)?;
+            let names: [&Path; 2] = [&self.file, &self.against];
+            let page = measured::write_page(&measures, &asset, &reference, names, directory)?;
             notes.note(&format!("measures and pictures: {}", page.display()));
         }
         self.outcome(&measures, notes)
@@ -86,11 +89,11 @@ impl Arguments {
     }
 
     /// The time of a frame on a graphics device, if one is asked for.
-    fn gpu(&self, asset: &Asset, against: Model<'_>, notes: &mut Notes<'_>) -> Result<Option<GpuFrame>> {
+    fn gpu(&self, asset: &Asset, against: &Reference<'_>, notes: &mut Notes<'_>) -> Result<Option<GpuFrame>> {
         if self.device == Choice::Cpu {
             return Ok(None);
         }
-        match cost::gpu_frame(asset, &views::views(against)) {
+        match cost::gpu_frame(asset, against.views()) {
             Err(Error::Device(why)) if self.device == Choice::Auto => {
                 notes.note(&format!("no frame was drawn on a graphics device: {why}"));
                 Ok(None)

@@ -5,8 +5,8 @@
 //!    inside as the curvature asks for.
 //! 3. [`ply`]: one binary PLY of all splats, each face with the number of its splat.
 //!
-//! Both the chords and the triangles stay within [`crate::tolerance::EXPORT_SHARE`] of the
-//! error budget.
+//! Both the chords and the triangles stay within a share of the error budget, which is
+//! [`crate::tolerance::EXPORT_SHARE`] unless another is asked for.
 
 pub mod outline;
 pub mod ply;

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use rayon::prelude::*;
 
-use super::tessellate::{self, Patch};
+use super::tessellate::{self, Patch, REMEDY};
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
 use crate::model::splat::Splat;
-use crate::tolerance::EXPORT_SHARE;
+use crate::tolerance::EXPORT_SHARES;
 
 /// Triangles of a whole asset, at most: about a gigabyte of PLY.
 pub const TRIANGLE_LIMIT: usize = 50_000_000;
@@ -17,14 +17,13 @@ pub const TRIANGLE_LIMIT: usize = 50_000_000;
 /// small beside the result.
 const BATCH: usize = 4096;
 
-/// Tessellates every splat to [`EXPORT_SHARE`] of the asset's error budget, in the order of
-/// the file.
+/// Tessellates every splat to a share of the asset's error budget, in the order of the file.
 ///
 /// # Errors
-/// [`Error::Usage`] if the budget is so small beside the splats that the triangles would pass
-/// [`TRIANGLE_LIMIT`].
-pub fn patches(asset: &Asset) -> Result<Vec<Patch>> {
-    let distance = EXPORT_SHARE * asset.max_error;
+/// [`Error::Usage`] if the share is not one of [`EXPORT_SHARES`], or the distance so small beside
+/// the splats that the triangles would pass [`TRIANGLE_LIMIT`].
+pub fn patches(asset: &Asset, share: f64) -> Result<Vec<Patch>> {
+    let distance = checked(share)? * asset.max_error;
     let mut patches = Vec::with_capacity(asset.splats.len());
     let mut triangles = 0;
     for batch in asset.splats.chunks(BATCH) {
@@ -37,24 +36,38 @@ pub fn patches(asset: &Asset) -> Result<Vec<Patch>> {
         }
         if triangles > TRIANGLE_LIMIT {
             let what = format!("{triangles} triangles and more pass the export's limit of {TRIANGLE_LIMIT}");
-            return Err(Error::Usage(format!("{what}; bake with a larger --max-error to export")));
+            return Err(Error::Usage(format!("{what}; {REMEDY}")));
         }
     }
     Ok(patches)
 }
 
-/// Tessellates an asset and encodes it as [`write()`] does.
+/// A share of the error budget that can be asked for.
+///
+/// # Errors
+/// [`Error::Usage`] if it is not one of [`EXPORT_SHARES`].
+pub fn checked(share: f64) -> Result<f64> {
+    let (least, most) = (EXPORT_SHARES.start(), EXPORT_SHARES.end());
+    if EXPORT_SHARES.contains(&share) {
+        Ok(share)
+    } else {
+        let what = format!("the triangles cannot keep {share} of the error budget");
+        Err(Error::Usage(format!("{what}; give a share from {least} to {most}")))
+    }
+}
+
+/// Tessellates an asset to a share of its error budget and encodes it as [`write()`] does.
 ///
 /// # Errors
 /// As [`patches`].
-pub fn encode(asset: &Asset) -> Result<Vec<u8>> {
-    let patches = patches(asset)?;
+pub fn encode(asset: &Asset, share: f64) -> Result<Vec<u8>> {
+    let patches = patches(asset, share)?;
     let mut bytes = Vec::new();
-    write(asset, &patches, &mut bytes).map_err(|error| Error::Internal(format!("export: {error}")))?;
+    write(asset, share, &patches, &mut bytes).map_err(|error| Error::Internal(format!("export: {error}")))?;
     Ok(bytes)
 }
 
-/// Writes the patches of an asset as a little-endian PLY.
+/// Writes the patches of an asset, made with this share of the budget, as a little-endian PLY.
 ///
 /// Vertices have `x y z` (double, in the input's coordinates), the quadric's unit normal
 /// `nx ny nz` (float) and, if the asset has colours, `red green blue`. Faces have
@@ -62,8 +75,8 @@ pub fn encode(asset: &Asset) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write(asset: &Asset, patches: &[Patch], out: &mut dyn Write) -> std::io::Result<()> {
-    out.write_all(header(asset, patches).as_bytes())?;
+pub fn write(asset: &Asset, share: f64, patches: &[Patch], out: &mut dyn Write) -> std::io::Result<()> {
+    out.write_all(header(asset, share, patches).as_bytes())?;
     for (splat, patch) in asset.splats.iter().zip(patches) {
         write_vertices(asset, splat, patch, out)?;
     }
@@ -81,7 +94,7 @@ pub fn write(asset: &Asset, patches: &[Patch], out: &mut dyn Write) -> std::io::
     Ok(())
 }
 
-fn header(asset: &Asset, patches: &[Patch]) -> String {
+fn header(asset: &Asset, share: f64, patches: &[Patch]) -> String {
     let vertices: usize = patches.iter().map(|patch| patch.points.len()).sum();
     let faces: usize = patches.iter().map(|patch| patch.triangles.len()).sum();
     let budget = asset.max_error * asset.frame.scale();
@@ -89,7 +102,7 @@ fn header(asset: &Asset, patches: &[Patch]) -> String {
         if asset.has_colors { "property uchar red\nproperty uchar green\nproperty uchar blue\n" } else { "" };
     format!(
         "ply\nformat binary_little_endian 1.0\n\
-         comment qsplat export: triangles within {EXPORT_SHARE} of the error budget {budget:e} of the splats\n\
+         comment qsplat export: triangles within {share} of the error budget {budget:e} of the splats\n\
          element vertex {vertices}\n\
          property double x\nproperty double y\nproperty double z\n\
          property float nx\nproperty float ny\nproperty float nz\n{colors}\

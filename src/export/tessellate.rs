@@ -29,6 +29,9 @@ const GRID_PART: f64 = 0.7;
 /// this much, so that the triangles along a cylinder's rulings are not thinner than 1 : 20.
 const LEAST_STRETCH: f64 = 0.05;
 
+/// What to do about too many triangles.
+pub(super) const REMEDY: &str = "export with a larger --tolerance, or bake with a larger --max-error";
+
 /// Vertices inside one splat, at most.
 pub const POINT_LIMIT: usize = 1 << 22;
 
@@ -197,6 +200,6 @@ fn refused(error: spade::InsertionError) -> Error {
 
 fn too_many() -> Error {
     let what =
-        format!("one splat alone would need more than {POINT_LIMIT} vertices at a tenth of the error budget");
-    Error::Usage(format!("{what}; bake with a larger --max-error to export"))
+        format!("one splat alone would need more than {POINT_LIMIT} vertices to stay within the tolerance");
+    Error::Usage(format!("{what}; {REMEDY}"))
 }

@@ -7,11 +7,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DMat3, DVec2, DVec3};
 use proptest::prelude::*;
 
+use super::ply;
 use super::tessellate::{Patch, tessellate};
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::clip_curve::{ClipCurve, turn};
 use crate::model::frame::Frame;
 use crate::model::splat::Splat;
+use crate::tolerance::EXPORT_SHARE;
 
 fn splat(radii: DVec2, curvature: DVec2, clips: Vec<ClipCurve>) -> Splat {
     let axes = DMat3::from_rotation_x(0.3) * DMat3::from_rotation_z(1.1);
@@ -135,11 +137,13 @@ fn the_ply_says_what_was_tessellated() {
     ];
     let accuracy = Accuracy::default();
     let asset = Asset { frame, diagonal: 1.0, max_error: 1e-3, fit: accuracy, has_colors: true, splats };
-    let patches = super::ply::patches(&asset).unwrap();
+    let share = 0.02;
+    let patches = ply::patches(&asset, share).unwrap();
     let mut bytes = Vec::new();
-    super::ply::write(&asset, &patches, &mut bytes).unwrap();
+    ply::write(&asset, share, &patches, &mut bytes).unwrap();
     let end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
     let header = std::str::from_utf8(&bytes[..end]).unwrap();
+    assert!(header.contains("within 0.02 of the error budget 8e-3 "), "{header}");
     let (vertices, faces): (usize, usize) =
         patches.iter().fold((0, 0), |(v, f), p| (v + p.points.len(), f + p.triangles.len()));
     assert!(header.contains(&format!("element vertex {vertices}\n")), "{header}");
@@ -153,6 +157,22 @@ fn the_ply_says_what_was_tessellated() {
     // The last face belongs to the last splat.
     let last = bytes.len() - 4;
     assert_eq!(bytes[last..], 1_u32.to_le_bytes());
+}
+
+#[test]
+fn the_share_of_the_budget_is_kept_and_has_a_range() {
+    let bowl = splat(DVec2::new(0.9, 0.5), DVec2::new(0.7, 0.4), vec![ClipCurve::chord(0.5, 2.5)]);
+    let (frame, fit) = (Frame::default(), Accuracy::default());
+    let asset = Asset { frame, diagonal: 1.0, max_error: 1e-2, fit, has_colors: false, splats: vec![bowl] };
+    for share in [1.0, EXPORT_SHARE, 0.01, 1e-3] {
+        let patches = ply::patches(&asset, share).unwrap();
+        let gap = greatest_gap(&asset.splats[0], &patches[0]) / asset.max_error;
+        assert!(gap <= share && gap > 0.1 * share, "{share}: {gap}");
+    }
+    for share in [0.0, 9e-4, 1.001, -0.1, f64::NAN, f64::INFINITY] {
+        let message = ply::patches(&asset, share).unwrap_err().to_string();
+        assert!(message.contains("from 0.001 to 1"), "{message}");
+    }
 }
 
 fn any_clip() -> impl Strategy<Value = ClipCurve> {

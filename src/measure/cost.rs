@@ -24,7 +24,12 @@ const EVERY: usize = 4;
 ///
 /// # Errors
 /// Those of [`format::decode`] for the bytes, and of [`cpu::render`] for the views.
-pub fn cost(bytes: &[u8], asset: &Asset, input_points: usize, views: &[View]) -> Result<Cost> {
+pub fn cost<'a>(
+    bytes: &[u8],
+    asset: &Asset,
+    input_points: usize,
+    views: impl Iterator<Item = &'a View>,
+) -> Result<Cost> {
     let limits = format::Limits::default();
     let info = format::inspect(bytes, &limits)?;
     let counts = asset.counts();
@@ -60,9 +65,12 @@ pub fn cost(bytes: &[u8], asset: &Asset, input_points: usize, views: &[View]) ->
 ///
 /// # Errors
 /// Those of the drawing.
-pub fn frame_ms(views: &[View], draw: &mut dyn FnMut(&Camera, &Settings) -> Result<Picture>) -> Result<f64> {
+pub fn frame_ms<'a>(
+    views: impl Iterator<Item = &'a View>,
+    draw: &mut dyn FnMut(&Camera, &Settings) -> Result<Picture>,
+) -> Result<f64> {
     let settings = Settings::plain([SIDE; 2]);
-    let times = views.iter().step_by(EVERY).map(|view| seconds(|| draw(&view.camera, &settings)));
+    let times = views.step_by(EVERY).map(|view| seconds(|| draw(&view.camera, &settings)));
     Ok(1e3 * median(times)?)
 }
 
@@ -71,12 +79,12 @@ pub fn frame_ms(views: &[View], draw: &mut dyn FnMut(&Camera, &Settings) -> Resu
 /// # Errors
 /// [`crate::Error::Device`] if there is none or it fails.
 #[cfg(feature = "gpu")]
-pub fn gpu_frame(asset: &Asset, views: &[View]) -> Result<GpuFrame> {
+pub fn gpu_frame<'a>(asset: &Asset, views: impl Iterator<Item = &'a View> + Clone) -> Result<GpuFrame> {
     let gpu = Gpu::new()?;
     let loaded = gpu.load(asset)?;
     let mut draw = |camera: &Camera, settings: &Settings| loaded.draw(camera, settings);
     // The first picture also pays for what a device puts off until it is used.
-    frame_ms(&views[..views.len().min(1)], &mut draw)?;
+    frame_ms(views.clone().take(1), &mut draw)?;
     Ok(GpuFrame { adapter: gpu.info().name.clone(), frame_ms: frame_ms(views, &mut draw)? })
 }
 
@@ -85,7 +93,7 @@ pub fn gpu_frame(asset: &Asset, views: &[View]) -> Result<GpuFrame> {
 /// # Errors
 /// [`crate::Error::Device`], always.
 #[cfg(not(feature = "gpu"))]
-pub fn gpu_frame(_: &Asset, _: &[View]) -> Result<GpuFrame> {
+pub fn gpu_frame<'a>(_: &Asset, _: impl Iterator<Item = &'a View> + Clone) -> Result<GpuFrame> {
     Err(Error::Device("this program was built without the `gpu` feature".into()))
 }
 

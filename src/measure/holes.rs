@@ -16,7 +16,6 @@ use image::{Rgb, RgbImage};
 
 use super::views::View;
 use crate::model::asset::Asset;
-use crate::render::input::Prepared;
 use crate::render::picture::Visibility;
 
 /// Width of the band along the silhouette on either side, pixels.
@@ -80,19 +79,42 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// For a view of `side` pixels: of a mesh, or of a cloud with its discs.
+    /// For a view of `side` pixels, of an input drawn with discs of this radius in model units:
+    /// 0 for a mesh.
     #[must_use]
-    pub fn new(asset: &Asset, input: &Prepared<'_>, view: &View, side: u32) -> Self {
-        let overhang = input.disc() / view.height * f64::from(side);
+    pub fn new(asset: &Asset, disc: f64, view: &View, side: u32) -> Self {
+        let overhang = disc / view.height * f64::from(side);
         // Written so that even discs as large as the picture give a width.
         let inner = BAND + overhang.ceil().min(f64::from(side)) as u32;
-        Self { inner, behind: BEHIND * asset.max_error + input.disc() }
+        Self { inner, behind: BEHIND * asset.max_error + disc }
     }
 }
 
-/// Compares what two visibilities of one size and camera hit.
+/// How far away the input lies at each pixel: all that is compared of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Depths {
+    /// Width and height in pixels.
+    size: [u32; 2],
+    /// View depths in model units, rows from the top; infinite where nothing is hit.
+    depths: Vec<f64>,
+}
+
+impl From<&Visibility> for Depths {
+    fn from(seen: &Visibility) -> Self {
+        let depths = seen.seen.iter().map(|hit| hit.map_or(f64::INFINITY, |hit| hit.depth)).collect();
+        Self { size: seen.size, depths }
+    }
+}
+
+impl Depths {
+    fn at(&self, x: u32, y: u32) -> Option<f64> {
+        self.depths.get(y as usize * self.size[0] as usize + x as usize).copied().filter(|d| d.is_finite())
+    }
+}
+
+/// Compares what an input and splats seen by one camera hit, in pictures of one size.
 #[must_use]
-pub fn compare(input: &Visibility, splats: &Visibility, rules: &Rules) -> HoleMap {
+pub fn compare(input: &Depths, splats: &Visibility, rules: &Rules) -> HoleMap {
     let size = input.size;
     let hits = Counts::of(input);
     let marks = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
@@ -105,8 +127,7 @@ pub fn compare(input: &Visibility, splats: &Visibility, rules: &Rules) -> HoleMa
             (None, Some(_)) => Mark::Extra,
             // The first is the quick answer to most, the second the rule.
             (Some(own), Some(hit))
-                if hit.depth > own.depth + rules.behind
-                    && hit.depth > farthest(input, x, y) + rules.behind =>
+                if hit.depth > own + rules.behind && hit.depth > farthest(input, x, y) + rules.behind =>
             {
                 Mark::Through
             }
@@ -117,11 +138,11 @@ pub fn compare(input: &Visibility, splats: &Visibility, rules: &Rules) -> HoleMa
 }
 
 /// The greatest depth that the nine pixels around one show.
-fn farthest(seen: &Visibility, x: u32, y: u32) -> f64 {
+fn farthest(seen: &Depths, x: u32, y: u32) -> f64 {
     let around =
         (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| (x, y)));
     let inside = around.filter(|&(x, y)| x < seen.size[0] && y < seen.size[1]);
-    inside.filter_map(|(x, y)| seen.at(x, y)).map(|hit| hit.depth).fold(f64::NEG_INFINITY, f64::max)
+    inside.filter_map(|(x, y)| seen.at(x, y)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 impl HoleMap {
@@ -162,13 +183,13 @@ struct Counts {
 }
 
 impl Counts {
-    fn of(seen: &Visibility) -> Self {
+    fn of(seen: &Depths) -> Self {
         let stride = seen.size[0] as usize + 1;
         let mut sums = vec![0; stride * (seen.size[1] as usize + 1)];
-        for (y, row) in seen.seen.chunks_exact(stride - 1).enumerate() {
+        for (y, row) in seen.depths.chunks_exact(stride - 1).enumerate() {
             let mut along = 0;
-            for (x, hit) in row.iter().enumerate() {
-                along += u32::from(hit.is_some());
+            for (x, depth) in row.iter().enumerate() {
+                along += u32::from(depth.is_finite());
                 sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + along;
             }
         }
@@ -216,7 +237,7 @@ mod tests {
             seen(&["........", "........", "...11111", "...11111", "...11111", "...11111", "...11111"]);
         let splats =
             seen(&["5.......", "........", ".5......", "...11111", "...11.51", "...11111", "..111111"]);
-        let map = compare(&input, &splats, &Rules { inner: 1, behind: 2.0 });
+        let map = compare(&Depths::from(&input), &splats, &Rules { inner: 1, behind: 2.0 });
         let expected = ["e       ", "  ||||||", " e||||||", "  ||   |", "  || mt|", "  ||   |", "  ||||||"];
         assert_eq!(rows(&map), expected);
         assert_eq!([Mark::Missing, Mark::Extra, Mark::Through].map(|mark| map.count(mark)), [1, 2, 1]);
@@ -228,12 +249,12 @@ mod tests {
     fn depth_beside_a_step_is_not_through_and_a_wider_band_hides_more() {
         let input = seen(&["1111111", "1111444", "1111444", "1111444", "1111111"]);
         let splats = seen(&["1111111", "1111444", "1114444", "1114414", "1111111"]);
-        let near = compare(&input, &splats, &Rules { inner: 1, behind: 2.0 });
+        let near = compare(&Depths::from(&input), &splats, &Rules { inner: 1, behind: 2.0 });
         assert_eq!(near.count(Mark::Through), 0, "the step lies within a pixel");
         let splats = seen(&["1111111", "1144444", "1114444", "1114444", "1111111"]);
-        let far = compare(&input, &splats, &Rules { inner: 1, behind: 2.0 });
+        let far = compare(&Depths::from(&input), &splats, &Rules { inner: 1, behind: 2.0 });
         assert_eq!(far.faults().collect::<Vec<_>>(), [(2, 1)]);
-        let wide = compare(&input, &splats, &Rules { inner: 2, behind: 2.0 });
+        let wide = compare(&Depths::from(&input), &splats, &Rules { inner: 2, behind: 2.0 });
         assert_eq!((wide.count(Mark::Through), wide.compared()), (0, 3));
     }
 

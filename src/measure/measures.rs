@@ -85,14 +85,14 @@ pub struct Holes {
     pub pixels: u64,
 }
 
-/// The shaded picture of the splats beside that of the input, means over the views.
+/// The shaded picture of the splats beside that of the input: of one view, or means over the views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Image {
     /// Mean FLIP of the shaded pictures, in `[0, 1]`.
     pub flip_mean: f64,
-    /// 99th percentile of FLIP over the pixels, the greatest over the views.
+    /// 99th percentile of FLIP over the pixels; of all views the greatest.
     pub flip_p99: f64,
-    /// Peak signal to noise ratio of all views together, dB; capped at 99 where they are equal.
+    /// Peak signal to noise ratio, of all views together, dB; capped at 99 where they are equal.
     pub psnr: f64,
     /// Mean structural similarity.
     pub ssim: f64,
@@ -113,16 +113,9 @@ pub struct ViewMeasures {
     pub through: u64,
     /// See [`Holes`].
     pub pixels: u64,
-    /// See [`Image`].
-    pub flip_mean: f64,
-    /// 99th percentile of FLIP over the pixels of this view.
-    pub flip_p99: f64,
     /// Of this view alone.
-    pub psnr: f64,
-    /// Of this view alone.
-    pub ssim: f64,
-    /// Of this view alone.
-    pub normal_flip_mean: f64,
+    #[serde(flatten)]
+    pub image: Image,
 }
 
 /// What a file costs. Times are medians of at least five.

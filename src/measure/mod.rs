@@ -7,11 +7,14 @@ mod box_tree;
 mod climb;
 mod cloud_fit;
 pub mod cost;
+#[cfg(test)]
+pub(crate) mod documented;
 pub mod edge;
 mod feet;
 pub mod fit;
 pub mod holes;
 pub mod image;
+pub mod input_surface;
 pub mod measures;
 mod patch;
 #[cfg(test)]
@@ -20,6 +23,7 @@ mod patches;
 #[cfg(test)]
 mod planted;
 mod point_grid;
+pub mod reference;
 mod roots;
 mod samples;
 pub mod seen;
@@ -33,9 +37,10 @@ use glam::DVec3;
 
 use crate::error::Result;
 use crate::model::asset::Asset;
-use crate::render::input::{Model, Prepared, Style};
+use crate::render::input::Model;
 pub use measures::Measures;
 use measures::{CLOUD, Cost, Distances, MESH, SCHEMA};
+pub use reference::Reference;
 
 /// What is measured, and against what.
 #[derive(Clone, Copy)]
@@ -44,9 +49,10 @@ pub struct Subject<'a> {
     pub bytes: &'a [u8],
     /// The file as decoded.
     pub asset: &'a Asset,
-    /// The input it was baked from.
-    pub against: Model<'a>,
-    /// The feature lines, in the input's model units; `None` leaves `edge` out.
+    /// The input it was baked from. One that lies in another frame is sampled and drawn again in
+    /// the asset's; [`align::align`] brings it there beforehand.
+    pub against: &'a Reference<'a>,
+    /// The feature lines, in the reference's model units; `None` leaves `edge` out.
     pub lines: Option<&'a [Vec<DVec3>]>,
 }
 
@@ -63,22 +69,36 @@ pub fn measure(subject: &Subject<'_>) -> Result<Measures> {
 /// # Errors
 /// As [`measure`].
 pub fn measure_telling(subject: &Subject<'_>, tell: &mut dyn FnMut(&'static str)) -> Result<Measures> {
-    let asset = subject.asset;
-    let aligned = align::align(subject.against, asset)?;
-    let model = aligned.model();
-    tell("fit");
-    let fit = fit::fit(&fit::points(model, &[]), asset, fit::REACH * asset.max_error);
-    tell("surface");
-    let surface = surface::surface(asset, model)?;
-    tell("edge");
-    let frames = [&subject.against.cloud().frame, &asset.frame];
+    let model = subject.against.model;
+    let aligned = align::align(model, subject.asset)?;
+    let frames = [&model.cloud().frame, &subject.asset.frame];
+    if frames[0] == frames[1] {
+        return against(subject.against, subject, subject.lines, tell);
+    }
+    tell("reference");
     let lines = subject.lines.map(|lines| align::lines(lines, frames[0], frames[1]));
-    let edge = lines.and_then(|lines| edge::edge(asset, &lines));
+    against(&Reference::new(aligned.model())?, subject, lines.as_deref(), tell)
+}
+
+/// Measures against a reference in the asset's frame, with lines in that frame.
+fn against(
+    reference: &Reference<'_>,
+    subject: &Subject<'_>,
+    lines: Option<&[Vec<DVec3>]>,
+    tell: &mut dyn FnMut(&'static str),
+) -> Result<Measures> {
+    let asset = subject.asset;
+    tell("fit");
+    let fit = fit::fit(&reference.points, asset, fit::REACH * asset.max_error);
+    tell("surface");
+    let surface = surface::surface(asset, &reference.surface)?;
+    tell("edge");
+    let edge = lines.and_then(|lines| edge::edge(asset, lines));
     tell("views");
-    let views = views::views(model);
-    let seen = seen::seen(asset, &Prepared::new(model, &Style::default()), &views)?;
+    let seen = seen::seen(asset, &reference.drawn)?;
     tell("cost");
-    let cost = cost::cost(subject.bytes, asset, model.cloud().positions.len(), &views)?;
+    let model = reference.model;
+    let cost = cost::cost(subject.bytes, asset, model.cloud().positions.len(), reference.views())?;
     // An asset of one point has no diagonal: its errors are zero, not infinite.
     let share = |length: f64| if asset.diagonal > 0.0 { length / asset.diagonal } else { 0.0 };
     let accuracy = Distances { rms: fit.accuracy.rms, p99: fit.accuracy.p99, max: fit.accuracy.max };

@@ -3,7 +3,7 @@
 use image::{DynamicImage, RgbImage};
 use rayon::prelude::*;
 
-use super::holes::{self, HoleMap, Mark, Rules};
+use super::holes::{self, Depths, HoleMap, Mark, Rules};
 use super::image as difference;
 use super::measures::{Holes, Image, ViewMeasures};
 use super::views::{SIDE, View};
@@ -16,17 +16,49 @@ use crate::render::picture::{Picture, Visibility};
 /// PSNR of equal pictures, dB: JSON has no infinity.
 const MOST_DECIBELS: f64 = 99.0;
 
-/// One view, drawn.
+/// The input from one view, drawn once for all files that are compared with it. Fourteen bytes
+/// a pixel.
 #[derive(Clone, Debug)]
-pub struct Pair {
+pub struct Drawn {
+    /// The view.
+    pub view: View,
+    /// The lit input.
+    pub shaded: RgbImage,
+    /// Its normals.
+    pub normals: RgbImage,
+    depths: Depths,
+    /// Radius of the discs that a cloud is drawn as, model units; 0 for a mesh.
+    disc: f64,
+}
+
+impl Drawn {
+    /// Draws the input from one view.
+    ///
+    /// # Errors
+    /// [`crate::Error::Usage`] for a view that cannot be drawn.
+    pub fn new(input: &Prepared<'_>, view: View) -> Result<Self> {
+        let own = input.survey(&view.camera, [SIDE; 2])?;
+        Ok(Self {
+            view,
+            shaded: opaque(own.shaded),
+            normals: opaque(own.normals),
+            depths: Depths::from(&own.visibility),
+            disc: input.disc(),
+        })
+    }
+}
+
+/// The splats from one view, beside the input.
+#[derive(Clone, Debug)]
+pub struct Compared {
     /// Where only one of both is hit.
     pub holes: HoleMap,
     /// What the splats show first, by pixel.
     pub splats: Visibility,
-    /// The lit input and the lit splats.
-    pub shaded: [RgbImage; 2],
-    /// Normals of the input and of the splats.
-    pub normals: [RgbImage; 2],
+    /// The lit splats.
+    pub shaded: RgbImage,
+    /// Their normals.
+    pub normals: RgbImage,
     /// Rays that met a splat, once for each splat met.
     pub fragments: u64,
 }
@@ -44,42 +76,44 @@ pub struct Seen {
     pub fragments: f64,
 }
 
-/// Draws input and splats from one view.
+/// Draws splats as an input was drawn, and compares where both are hit.
 ///
 /// # Errors
 /// [`crate::Error::Usage`] for a view that cannot be drawn.
-pub fn draw(asset: &Asset, input: &Prepared<'_>, view: &View) -> Result<Pair> {
-    let size = [SIDE; 2];
-    let own = input.survey(&view.camera, size)?;
-    let other = cpu::survey(asset, &view.camera, size)?;
-    let opaque = |picture: Picture| DynamicImage::from(picture.rgba).to_rgb8();
-    Ok(Pair {
-        holes: holes::compare(&own.visibility, &other.visibility, &Rules::new(asset, input, view, SIDE)),
-        splats: other.visibility,
-        shaded: [opaque(own.shaded), opaque(other.shaded)],
-        normals: [opaque(own.normals), opaque(other.normals)],
-        fragments: other.fragments,
+pub fn compare(asset: &Asset, input: &Drawn) -> Result<Compared> {
+    let own = cpu::survey(asset, &input.view.camera, [SIDE; 2])?;
+    let rules = Rules::new(asset, input.disc, &input.view, SIDE);
+    Ok(Compared {
+        holes: holes::compare(&input.depths, &own.visibility, &rules),
+        splats: own.visibility,
+        shaded: opaque(own.shaded),
+        normals: opaque(own.normals),
+        fragments: own.fragments,
     })
 }
 
-/// Compares input and splats from all views.
+fn opaque(picture: Picture) -> RgbImage {
+    DynamicImage::from(picture.rgba).to_rgb8()
+}
+
+/// Compares splats with an input from all views.
 ///
 /// # Errors
-/// As [`draw`].
-pub fn seen(asset: &Asset, input: &Prepared<'_>, views: &[View]) -> Result<Seen> {
-    let scores: Vec<Scores> = views
+/// As [`compare`].
+pub fn seen(asset: &Asset, inputs: &[Drawn]) -> Result<Seen> {
+    let scores: Vec<Scores> = inputs
         .par_iter()
-        .map(|view| draw(asset, input, view).and_then(|pair| Scores::of(view, &pair)))
+        .map(|input| compare(asset, input).and_then(|splats| Scores::of(input, &splats)))
         .collect::<Result<_>>()?;
     let count = scores.len().max(1) as f64;
     let mean = |part: &dyn Fn(&Scores) -> f64| scores.iter().map(part).sum::<f64>() / count;
     let sum = |part: &dyn Fn(&ViewMeasures) -> u64| scores.iter().map(|scores| part(&scores.view)).sum();
     let image = Image {
-        flip_mean: mean(&|s| s.view.flip_mean),
-        flip_p99: scores.iter().map(|s| s.view.flip_p99).fold(0.0, f64::max),
+        flip_mean: mean(&|s| s.view.image.flip_mean),
+        flip_p99: scores.iter().map(|s| s.view.image.flip_p99).fold(0.0, f64::max),
         psnr: decibels(mean(&|s| s.mean_square)),
-        ssim: mean(&|s| s.view.ssim),
-        normal_flip_mean: mean(&|s| s.view.normal_flip_mean),
+        ssim: mean(&|s| s.view.image.ssim),
+        normal_flip_mean: mean(&|s| s.view.image.normal_flip_mean),
     };
     let holes = Holes {
         missing: sum(&|view| view.missing),
@@ -100,27 +134,28 @@ struct Scores {
 }
 
 impl Scores {
-    fn of(view: &View, pair: &Pair) -> Result<Self> {
-        let [input, splats] = &pair.shaded;
+    fn of(input: &Drawn, splats: &Compared) -> Result<Self> {
         let (flip, normals) = rayon::join(
-            || difference::flip(input, splats),
-            || difference::flip(&pair.normals[0], &pair.normals[1]),
+            || difference::flip(&input.shaded, &splats.shaded),
+            || difference::flip(&input.normals, &splats.normals),
         );
         let flip = flip?;
-        let mean_square = difference::mean_square(input, splats)?;
+        let mean_square = difference::mean_square(&input.shaded, &splats.shaded)?;
         let view = ViewMeasures {
-            name: view.name.clone(),
-            missing: pair.holes.count(Mark::Missing),
-            extra: pair.holes.count(Mark::Extra),
-            through: pair.holes.count(Mark::Through),
-            pixels: pair.holes.compared(),
-            flip_mean: flip.mean(),
-            flip_p99: flip.quantile(0.99),
-            psnr: decibels(mean_square),
-            ssim: difference::ssim(input, splats)?,
-            normal_flip_mean: normals?.mean(),
+            name: input.view.name.clone(),
+            missing: splats.holes.count(Mark::Missing),
+            extra: splats.holes.count(Mark::Extra),
+            through: splats.holes.count(Mark::Through),
+            pixels: splats.holes.compared(),
+            image: Image {
+                flip_mean: flip.mean(),
+                flip_p99: flip.quantile(0.99),
+                psnr: decibels(mean_square),
+                ssim: difference::ssim(&input.shaded, &splats.shaded)?,
+                normal_flip_mean: normals?.mean(),
+            },
         };
-        Ok(Self { view, mean_square, fragments: pair.fragments })
+        Ok(Self { view, mean_square, fragments: splats.fragments })
     }
 }
 

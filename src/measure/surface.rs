@@ -9,22 +9,17 @@
 //! means over the area. `max` looks at more: at a mesh's vertices, along the splats' rims and
 //! clip curves, where what stands out does so the farthest, and uphill from the worst samples.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::climb;
-use super::cloud_fit::CloudFit;
+use super::input_surface::{InputSurface, Probe, Shape};
 use super::measures::{Angles, Distances};
 use super::patches::Patches;
-use super::samples::{self, MOST, Spot};
+use super::samples::{self, MOST};
 use super::spread::{self, Sample};
-use super::triangles::Triangles;
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
-use crate::model::cloud::Cloud;
-use crate::model::mesh::Mesh;
-use crate::render::input::{Model, Style};
-use crate::render::mesh_normals::MeshNormals;
 use crate::tolerance::DEFAULT_EDGE_ANGLE;
 
 /// How far the splats' surfaces and the input's lie from each other. Distances in model units.
@@ -53,9 +48,9 @@ const RUN: usize = 1024;
 /// Measures the surfaces against each other.
 ///
 /// # Errors
-/// [`Error::Usage`] if either has no surface, or they do not lie in one frame.
-pub fn surface(asset: &Asset, against: Model<'_>) -> Result<SurfaceErrors> {
-    if asset.frame != against.cloud().frame {
+/// [`Error::Usage`] if the file has no surface, or they do not lie in one frame.
+pub fn surface(asset: &Asset, input: &InputSurface<'_>) -> Result<SurfaceErrors> {
+    if asset.frame != input.frame {
         return Err(Error::Usage(
             "the file was baked from another input: the two do not lie at the same place".into(),
         ));
@@ -64,93 +59,21 @@ pub fn surface(asset: &Asset, against: Model<'_>) -> Result<SurfaceErrors> {
     if patches.area() <= 0.0 {
         return Err(Error::Usage("the file has no splat of which anything is left to measure".into()));
     }
-    match against {
-        Model::Mesh(mesh) => of_mesh(asset, &patches, mesh),
-        Model::Cloud(cloud) => of_cloud(asset, &patches, cloud),
-    }
-}
-
-fn of_mesh(asset: &Asset, patches: &Patches<'_>, mesh: &Mesh) -> Result<SurfaceErrors> {
-    let areas = samples::areas(mesh);
-    let area: f64 = areas.iter().sum();
-    if area.is_nan() || area <= 0.0 {
-        return Err(Error::Usage("the mesh to measure against has no area".into()));
-    }
-    let normals = MeshNormals::new(mesh, Style::default().normals);
-    let spots = samples::on_mesh(mesh, &areas);
-    let places = spots.iter().map(|spot: &Spot| Probe {
-        at: spot.at,
-        normal: normals.at(spot.triangle as usize, spot.weights),
-        signed: true,
-        weight: 1.0,
-    });
-    let mut probes: Vec<Probe> = places.collect();
-    probes.extend(corners(mesh, &areas).into_iter().map(|at| Probe {
-        at,
-        normal: DVec3::ZERO,
-        signed: true,
-        weight: 0.0,
-    }));
-    let (mut forward, normal, worst) = forward(asset, patches, &probes);
-    let triangles = Triangles::new(mesh);
-    let step = (area / MOST as f64).sqrt();
-    let around = |at, step| climb::around(at, step).filter_map(|place| triangles.closest(place));
-    let distance = |at| patches.nearest(at, &mut None).map(|nearest| nearest.distance);
-    forward.max = forward.max.max(climb::highest(&worst, step, around, distance));
-    let backward = backward(patches, |at, last| triangles.distance(at, last));
-    Ok(SurfaceErrors { forward, backward, normal, overlap: Some(patches.area() / area) })
-}
-
-fn of_cloud(asset: &Asset, patches: &Patches<'_>, cloud: &Cloud) -> Result<SurfaceErrors> {
-    let fit = CloudFit::new(&cloud.positions)?;
-    let points: Vec<u32> = (0..cloud.positions.len() as u32).collect();
-    let probe = |point: u32| {
-        let given = cloud.normals.get(point as usize).and_then(|normal| normal.as_dvec3().try_normalize());
-        Probe {
-            at: cloud.positions[point as usize].as_dvec3(),
-            normal: given.unwrap_or_else(|| fit.normal(point as usize)),
-            signed: given.is_some(),
-            weight: 1.0,
+    let (mut forward, normal, worst) = forward(asset, &patches, &input.probes);
+    Ok(match &input.shape {
+        Shape::Mesh { triangles, area } => {
+            let step = (area / MOST as f64).sqrt();
+            let around = |at, step| climb::around(at, step).filter_map(|place| triangles.closest(place));
+            let distance = |at| patches.nearest(at, &mut None).map(|nearest| nearest.distance);
+            forward.max = forward.max.max(climb::highest(&worst, step, around, distance));
+            let backward = backward(&patches, |at, last| triangles.distance(at, last));
+            SurfaceErrors { forward, backward, normal, overlap: Some(patches.area() / area) }
         }
-    };
-    let probes: Vec<Probe> = samples::thinned(&points, MOST_POINTS).into_par_iter().map(probe).collect();
-    let (forward, normal, _) = forward(asset, patches, &probes);
-    let backward = backward(patches, |at, _| Some(fit.distance(at)));
-    Ok(SurfaceErrors { forward, backward, normal, overlap: None })
-}
-
-/// Points of a cloud, or vertices of a mesh, that are looked at: all but of very large inputs,
-/// whose points are then chosen evenly in the order of the file.
-const MOST_POINTS: usize = 4 * MOST;
-
-/// Corners of the triangles that have an area.
-fn corners(mesh: &Mesh, areas: &[f64]) -> Vec<DVec3> {
-    let mut used = vec![false; mesh.vertices.positions.len()];
-    for (corners, _) in mesh.triangles.iter().zip(areas).filter(|(_, area)| **area > 0.0) {
-        corners.iter().for_each(|&corner| used[corner as usize] = true);
-    }
-    let positions = mesh.vertices.positions.iter().zip(used);
-    let corners: Vec<Vec3> = positions.filter(|(_, used)| *used).map(|(position, _)| *position).collect();
-    samples::thinned(&corners, MOST_POINTS).into_iter().map(Vec3::as_dvec3).collect()
-}
-
-/// A place of the input's surface.
-#[derive(Clone, Copy, Debug)]
-struct Probe {
-    at: DVec3,
-    /// Zero where it is not known.
-    normal: DVec3,
-    /// Whether the normal's sign means anything.
-    signed: bool,
-    weight: f64,
-}
-
-impl Probe {
-    /// Angle to a unit normal, degrees.
-    fn angle(&self, normal: DVec3) -> f64 {
-        let cosine = if self.signed { self.normal.dot(normal) } else { self.normal.dot(normal).abs() };
-        libm::atan2(self.normal.cross(normal).length(), cosine).to_degrees()
-    }
+        Shape::Cloud(fit) => {
+            let backward = backward(&patches, |at, _| Some(fit.distance(at)));
+            SurfaceErrors { forward, backward, normal, overlap: None }
+        }
+    })
 }
 
 /// Distances and angles of the probes, and the worst of them with their distances.

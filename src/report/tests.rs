@@ -2,13 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::collections::BTreeSet;
-
 use glam::{DMat3, DVec2, DVec3};
-use serde_json::Value;
 
 use super::*;
 use crate::bake::StageTime;
+use crate::measure::documented::assert_documented;
 use crate::model::asset;
 use crate::model::clip_curve::ClipCurve;
 use crate::model::frame::Frame;
@@ -80,31 +78,9 @@ fn full() -> Report {
     Report::new(&asset_of(DVec2::ZERO, vec![]), file(), Some(origin("auto", "dropped as asked", 0)))
 }
 
-/// Every key as a path: `file.chunks[].name`.
-fn paths(value: &Value, at: &str, into: &mut BTreeSet<String>) {
-    match value {
-        Value::Object(map) => {
-            for (key, value) in map {
-                let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
-                into.insert(path.clone());
-                paths(value, &path, into);
-            }
-        }
-        Value::Array(items) => items.iter().for_each(|item| paths(item, &format!("{at}[]"), into)),
-        _ => {}
-    }
-}
-
 #[test]
 fn every_key_is_documented_and_nothing_else() {
-    let mut written = BTreeSet::new();
-    paths(&serde_json::to_value(full()).unwrap(), "", &mut written);
-    let document = include_str!("../../docs/report-schema.md");
-    let rows = document.lines().filter_map(|line| line.strip_prefix("| `"));
-    let documented: BTreeSet<String> =
-        rows.filter_map(|row| row.split('`').next()).map(str::to_owned).collect();
-    assert_eq!(documented, written);
-    assert!(document.contains(SCHEMA));
+    assert_documented(full(), &[], include_str!("../../docs/report-schema.md"), SCHEMA);
 }
 
 #[test]

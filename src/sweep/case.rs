@@ -6,10 +6,10 @@ use std::time::Instant;
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
 use crate::bake::{Edges, Options, Silent, feature_lines};
-use crate::deliver::deliver;
+use crate::deliver::{deliver, model};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
-use crate::measure::{self, measure};
+use crate::measure::{self, Reference, measure};
 use crate::model::asset::Asset;
 use crate::model::frame::Frame;
 use crate::render::camera::{Framing, View};
@@ -22,17 +22,36 @@ pub(super) const FRAME_SIZE: [u32; 2] = [512, 512];
 /// Width and height of the pictures: small, since the page holds two a case.
 const PICTURE_SIZE: [u32; 2] = [280, 280];
 
+/// The view of [`crate::measure::views`] that the pictures show: the model fills it.
+const PICTURE_VIEW: &str = "right-top-front";
+
 /// An input as its cases share it.
-pub(super) struct Subject {
-    pub(super) input: Input,
+pub(super) struct Subject<'a> {
+    pub(super) input: &'a Input,
     pub(super) edges: Edges,
+    /// What every case is measured against.
+    pub(super) reference: Reference<'a>,
+    /// From where the pictures of the page are drawn.
+    pub(super) camera: Camera,
+}
+
+impl<'a> Subject<'a> {
+    /// # Errors
+    /// As [`Reference::new`].
+    pub(super) fn new(input: &'a Input, edges: Edges) -> Result<Self> {
+        let reference = Reference::new(model(input))?;
+        let view = reference.views().find(|view| view.name == PICTURE_VIEW);
+        let iso = || iso(&input.cloud().frame, reference.model.diagonal(), PICTURE_SIZE);
+        let camera = view.map_or_else(iso, |view| view.camera);
+        Ok(Self { input, edges, reference, camera })
+    }
 }
 
 /// PNGs of a case: shaded, and each splat in a colour of its own.
 pub(super) type Pictures = [Vec<u8>; 2];
 
 /// Runs a case. Whatever goes wrong is its message: the other cases go on.
-pub(super) fn run(subject: &Subject, setting: &Setting, frames: usize) -> (Case, Option<Pictures>) {
+pub(super) fn run(subject: &Subject<'_>, setting: &Setting, frames: usize) -> (Case, Option<Pictures>) {
     let outcome = catch_unwind(AssertUnwindSafe(|| outcome(subject, setting, frames)));
     // A panic is a bug of ours, and has been told by the program's hook.
     let outcome = outcome.unwrap_or_else(|_| Err(Error::Internal("the case panicked".into())));
@@ -51,15 +70,15 @@ pub(super) fn run(subject: &Subject, setting: &Setting, frames: usize) -> (Case,
     (case, pictures)
 }
 
-fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outcome, Pictures)> {
+fn outcome(subject: &Subject<'_>, setting: &Setting, frames: usize) -> Result<(Outcome, Pictures)> {
     let options = Options { edges: subject.edges.clone(), ..setting.options() };
-    let delivery = deliver(&subject.input, &options, &mut Silent)?;
+    let delivery = deliver(subject.input, &options, &mut Silent)?;
     let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
-    let lines = feature_lines(&subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
+    let lines = feature_lines(subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
     let measures = measure(&measure::Subject {
         bytes: &delivery.bytes,
         asset: &delivery.asset,
-        against: model(&subject.input),
+        against: &subject.reference,
         lines: lines.as_deref(),
     })?;
     let outcome = Outcome {
@@ -69,16 +88,9 @@ fn outcome(subject: &Subject, setting: &Setting, frames: usize) -> Result<(Outco
         frame_ms: frame_ms(&delivery.asset, frames)?,
         measures,
     };
-    let pictures = [draw_asset(&delivery.asset, Show::Shaded)?, draw_asset(&delivery.asset, Show::Splats)?];
+    let picture = |show| draw_asset(&delivery.asset, &subject.camera, show);
+    let pictures = [picture(Show::Shaded)?, picture(Show::Splats)?];
     Ok((outcome, pictures))
-}
-
-/// The input as what is drawn and measured against.
-pub(super) fn model(input: &Input) -> input::Model<'_> {
-    match input {
-        Input::Mesh(mesh) => input::Model::Mesh(mesh),
-        Input::Cloud(cloud) => input::Model::Cloud(cloud),
-    }
 }
 
 /// Milliseconds of one frame on the CPU reference: the median.
@@ -109,18 +121,16 @@ fn iso(frame: &Frame, diagonal: f64, size: [u32; 2]) -> Camera {
     Camera::framing(frame, diagonal, View::Iso, Framing::default(), size)
 }
 
-fn draw_asset(asset: &Asset, show: Show) -> Result<Vec<u8>> {
+fn draw_asset(asset: &Asset, camera: &Camera, show: Show) -> Result<Vec<u8>> {
     let settings = Settings { size: PICTURE_SIZE, show, ..Settings::default() };
-    let camera = iso(&asset.frame, asset.diagonal, PICTURE_SIZE);
-    png::encode(&cpu::render(asset, &camera, &settings)?.rgba)
+    png::encode(&cpu::render(asset, camera, &settings)?.rgba)
 }
 
 /// The input, drawn as its bakes are.
-pub(super) fn draw_input(input: &Input) -> Result<Vec<u8>> {
+pub(super) fn draw_input(subject: &Subject<'_>) -> Result<Vec<u8>> {
     let settings = Settings { size: PICTURE_SIZE, ..Settings::default() };
-    let model = model(input);
-    let camera = iso(&input.cloud().frame, model.diagonal(), PICTURE_SIZE);
-    png::encode(&input::render(model, &camera, &settings, &input::Style::default())?.rgba)
+    let picture = input::render(model(subject.input), &subject.camera, &settings, &input::Style::default())?;
+    png::encode(&picture.rgba)
 }
 
 #[cfg(test)]

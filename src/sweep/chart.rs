@@ -17,6 +17,9 @@ const TEXT: u32 = 32;
 /// Colour of text and axes.
 const INK: RGBColor = RGBColor(40, 40, 40);
 
+/// Colour of guides.
+const FAINT: RGBColor = RGBColor(120, 120, 120);
+
 /// One curve.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
@@ -80,7 +83,7 @@ type Drawn = std::result::Result<(), Box<dyn StdError>>;
 const MARK: i32 = 9;
 
 /// Radius of the ring around a point on the front, pixels.
-const RING: i32 = 19;
+const RING: i32 = 16;
 
 /// Draws curves. Points that have no logarithm are left out; `None` if none remains.
 ///
@@ -139,7 +142,7 @@ fn draw(svg: &mut String, labels: [&str; 2], lines: &[Line], guides: &[Guide]) -
             .map(|n| at(x.0 + (x.1 - x.0) * f64::from(n) / 200.0))
             .filter(|p| (y.0..=y.1).contains(&p.1))
             .collect();
-        chart.draw_series(DashedLineSeries::new(path, 4, 8, RGBColor(120, 120, 120).stroke_width(2)))?;
+        chart.draw_series(DashedLineSeries::new(path, 4, 8, FAINT.stroke_width(2)))?;
     }
     for line in lines {
         curve(&mut chart, line)?;

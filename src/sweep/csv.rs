@@ -3,6 +3,24 @@
 use super::schema::{Case, Model, Outcome, Sweep};
 use crate::error::{Error, Result};
 
+/// A column that an input and its case fill, if it has one.
+type About = (&'static str, fn(&Model, Option<&Case>) -> String);
+
+/// The columns before an outcome's.
+const SETTINGS: [About; 5] = [
+    ("model", |model, _| model.name.clone()),
+    ("edges", |model, _| model.edges.clone()),
+    ("variant", |_, case| case.map_or_else(String::new, |case| case.variant.clone())),
+    ("max_error", |_, case| case.map_or_else(String::new, |case| case.max_error.clone())),
+    ("effort", |_, case| case.map_or_else(String::new, |case| case.effort.to_string())),
+];
+
+/// The columns after an outcome's.
+const VERDICT: [About; 2] = [
+    ("fronts", |_, case| case.map_or_else(String::new, |case| case.fronts.join(" "))),
+    ("failure", |model, case| case.map_or(&model.failure, |case| &case.failure).clone().unwrap_or_default()),
+];
+
 /// A column that an outcome fills.
 type Column = (&'static str, fn(&Outcome) -> String);
 
@@ -55,8 +73,8 @@ fn optional(value: Option<f64>) -> String {
 pub fn csv(sweep: &Sweep) -> Result<String> {
     let lost = |error: &dyn std::fmt::Display| Error::Internal(format!("CSV: {error}"));
     let mut table = ::csv::Writer::from_writer(Vec::new());
-    let head = ["model", "edges", "variant", "max_error", "effort"].into_iter();
-    let head = head.chain(COLUMNS.iter().map(|column| column.0)).chain(["fronts", "failure"]);
+    let settings = SETTINGS.iter().map(|column| column.0);
+    let head = settings.chain(COLUMNS.iter().map(|column| column.0)).chain(VERDICT.map(|column| column.0));
     table.write_record(head).map_err(|error| lost(&error))?;
     for model in &sweep.models {
         for row in rows(model) {
@@ -70,13 +88,11 @@ pub fn csv(sweep: &Sweep) -> Result<String> {
 /// A row a case; one for an input that could not be read.
 fn rows(model: &Model) -> Vec<Vec<String>> {
     let row = |case: Option<&Case>| {
+        let about = |columns: &[About]| columns.iter().map(|column| (column.1)(model, case)).collect();
+        let mut row: Vec<String> = about(&SETTINGS);
         let outcome = case.and_then(|case| case.outcome.as_ref());
-        let of = |get: fn(&Case) -> String| case.map_or_else(String::new, get);
-        let mut row = vec![model.name.clone(), model.edges.clone()];
-        row.extend([of(|c| c.variant.clone()), of(|c| c.max_error.clone()), of(|c| c.effort.to_string())]);
         row.extend(COLUMNS.iter().map(|(_, value)| outcome.map_or_else(String::new, value)));
-        row.push(of(|case| case.fronts.join(" ")));
-        row.push(case.map_or(&model.failure, |case| &case.failure).clone().unwrap_or_default());
+        row.extend::<Vec<String>>(about(&VERDICT));
         row
     };
     if model.failure.is_some() { vec![row(None)] } else { model.cases.iter().map(|c| row(Some(c))).collect() }

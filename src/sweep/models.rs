@@ -19,21 +19,26 @@ use crate::ingest::{self, Input};
 pub(super) fn sweep(path: &Path, plan: &Plan, watch: &mut dyn FnMut(&Event<'_>)) -> (Model, Shown) {
     let mut model = blank(path, plan);
     let start = Instant::now();
-    let subject = match subject(path, plan) {
+    let read = read(path, plan);
+    model.read_seconds = start.elapsed().as_secs_f64();
+    let subject = read
+        .as_ref()
+        .map_err(ToString::to_string)
+        .and_then(|(input, edges)| Subject::new(input, edges.clone()).map_err(|error| error.to_string()));
+    let subject = match subject {
         Ok(subject) => subject,
-        Err(error) => {
-            model.failure = Some(error.to_string());
+        Err(failure) => {
+            model.failure = Some(failure);
             return (model, Shown::default());
         }
     };
-    model.read_seconds = start.elapsed().as_secs_f64();
-    let (kind, triangles) = match &subject.input {
+    let (kind, triangles) = match subject.input {
         Input::Mesh(mesh) => ("mesh", mesh.triangles.len()),
         Input::Cloud(_) => ("cloud", 0),
     };
     model.kind = Some(kind.into());
     (model.points, model.triangles) = (subject.input.cloud().positions.len() as u64, triangles as u64);
-    let mut shown = Shown { input: case::draw_input(&subject.input).ok(), cases: Vec::new() };
+    let mut shown = Shown { input: case::draw_input(&subject).ok(), cases: Vec::new() };
     let mut add = |settings: &[Setting], model: &mut Model| {
         for (case, pictures) in run_all(&subject, settings, plan, &model.name, watch) {
             model.cases.push(case);
@@ -71,7 +76,8 @@ fn blank(path: &Path, plan: &Plan) -> Model {
     }
 }
 
-fn subject(path: &Path, plan: &Plan) -> Result<Subject> {
+/// The input and what to cut it along.
+fn read(path: &Path, plan: &Plan) -> Result<(Input, Edges)> {
     let limits = ingest::Limits::default();
     let input = ingest::read(path, &limits)?;
     let edges = match (&plan.lines, plan.lines.of(path)) {
@@ -79,7 +85,7 @@ fn subject(path: &Path, plan: &Plan) -> Result<Subject> {
         (Lines::None, None) => Edges::None,
         (_, None) => Edges::Auto,
     };
-    Ok(Subject { input, edges })
+    Ok((input, edges))
 }
 
 /// What a worker tells: a case began, or it ended.
@@ -87,7 +93,7 @@ type Told = (usize, Option<(Case, Option<Pictures>)>);
 
 /// Runs cases, `plan.jobs` at a time; the results in the order of the settings.
 fn run_all(
-    subject: &Subject,
+    subject: &Subject<'_>,
     settings: &[Setting],
     plan: &Plan,
     name: &str,
@@ -116,7 +122,7 @@ fn run_all(
 }
 
 /// Takes one case after another until none is left.
-fn work(subject: &Subject, settings: &[Setting], frames: usize, next: &AtomicUsize, tell: &Sender<Told>) {
+fn work(subject: &Subject<'_>, settings: &[Setting], frames: usize, next: &AtomicUsize, tell: &Sender<Told>) {
     loop {
         let index = next.fetch_add(1, Ordering::Relaxed);
         let Some(setting) = settings.get(index) else { return };

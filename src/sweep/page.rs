@@ -41,6 +41,10 @@ fn head(sweep: &Sweep) -> String {
             "<span class=\"bad\">{jobs} cases ran at a time, so their times cannot be compared.</span>"
         ),
     };
+    let models = match sweep.models.len() {
+        1 => "one model".to_owned(),
+        count => format!("{count} models"),
+    };
     let links: String = sweep
         .models
         .iter()
@@ -52,11 +56,10 @@ fn head(sweep: &Sweep) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>qsplat: error against cost</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <h1>Error against cost</h1>\n\
-         <p>{cases} bakes of {} models.{failures} {together}</p>\n\
+         <p>{cases} bakes of {models}.{failures} {together}</p>\n\
          <p class=\"facts\">{}, {} threads. Frame times are medians of {} frames of {} × {} pixels on the {}. \
          Distances are fractions of the diagonal of the input’s bounding box.</p>\n\
          <ul class=\"legend\">{links}</ul>\n",
-        sweep.models.len(),
         escape(&sweep.generator),
         run.threads,
         run.frames,

@@ -54,7 +54,7 @@ pub struct Model {
     pub triangles: u64,
     /// Seconds to read it.
     pub read_seconds: f64,
-    /// Why it could not be read, if so; then it has no cases.
+    /// Why it could not be read or has no surface to measure, if so; then it has no cases.
     pub failure: Option<String>,
     /// Its bakes: everything by effort, then planes alone, then chords alone.
     pub cases: Vec<Case>,

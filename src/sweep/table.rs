@@ -45,13 +45,13 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// Digits in groups of three, apart by thin spaces.
+/// Digits in groups of three, apart by narrow spaces that keep a number on one line.
 pub(super) fn grouped(value: u64) -> String {
     let digits = value.to_string();
     let mut out = String::new();
     for (n, digit) in digits.chars().enumerate() {
         if n > 0 && (digits.len() - n).is_multiple_of(3) {
-            out.push('\u{2009}');
+            out.push('\u{202f}');
         }
         out.push(digit);
     }
@@ -143,17 +143,31 @@ pub(super) fn exponents(model: &Model, curves: &[Curve<'_>]) -> String {
     )
 }
 
+/// What theory expects of the number of splats.
 fn expectation(slope: f64) -> String {
-    if (slope - axis::EXPECTED[0]).abs() < 1e-9 {
-        "−1".into()
+    let [planes, smooth, sphere] = axis::EXPECTED.map(exponent);
+    if exponent(slope) == planes {
+        planes
     } else {
-        "−⅔ on a smooth surface, −½ on a sphere".into()
+        format!("{smooth} on a smooth surface, {sphere} on a sphere")
     }
 }
 
+/// An expected exponent as a fraction.
+fn exponent(slope: f64) -> String {
+    let close = |other: f64| (slope - other).abs() < SAME_EXPONENT;
+    let known = [(-1.0, "−1"), (-2.0 / 3.0, "−⅔"), (-0.5, "−½")];
+    known.iter().find(|(other, _)| close(*other)).map_or_else(|| signed(slope), |known| known.1.into())
+}
+
+/// Exponents apart by less than this are one, read from a report where they were rounded.
+const SAME_EXPONENT: f64 = 1e-9;
+
 /// Two decimals, with a minus sign that is as wide as a plus.
 pub(super) fn signed(value: f64) -> String {
-    format!("{value:.2}").replace('-', "−")
+    let text = format!("{value:.2}");
+    // A zero has no sign.
+    if text == "-0.00" { "0.00".into() } else { text.replace('-', "−") }
 }
 
 #[cfg(test)]
@@ -163,7 +177,7 @@ mod tests {
     #[test]
     fn numbers_read_well() {
         assert_eq!(grouped(7), "7");
-        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
+        assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!(grouped(123), "123");
         for (value, text) in
             [(0.012_345, "0.0123"), (1.5, "1.50"), (12.34, "12.3"), (1234.5, "1234"), (0.0, "0")]
@@ -171,5 +185,7 @@ mod tests {
             assert_eq!(significant(value), text);
         }
         assert_eq!(signed(-0.666), "−0.67");
+        assert_eq!([signed(-0.004), signed(0.004), signed(-0.005_01)], ["0.00", "0.00", "−0.01"]);
+        assert_eq!([-1.0, -2.0 / 3.0, -0.5, -0.4].map(exponent), ["−1", "−⅔", "−½", "−0.40"]);
     }
 }

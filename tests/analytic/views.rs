@@ -52,7 +52,7 @@ pub fn compare(mesh: &Mesh, asset: &Asset) -> Seen {
     for view in views::views(Model::Mesh(mesh)) {
         let splats = cpu::visibility(asset, &view.camera, [SIDE; 2]).unwrap();
         let own = input.visibility(&view.camera, [SIDE; 2]).unwrap();
-        let map = holes::compare(&own, &splats, &Rules::new(asset, &input, &view, SIDE));
+        let map = holes::compare(&(&own).into(), &splats, &Rules::new(asset, input.disc(), &view, SIDE));
         seen.compared += map.compared();
         seen.missing += map.count(Mark::Missing);
         seen.extra += map.count(Mark::Extra);

@@ -1,10 +1,7 @@
 //! The schema against its document, and the check against planted faults.
 
-use std::collections::BTreeSet;
-
-use serde_json::Value;
-
 use super::*;
+use crate::measure::documented::assert_documented;
 
 /// Measures that keep every promise, with everything that may be `None` there.
 fn sound() -> Measures {
@@ -32,31 +29,9 @@ fn sound() -> Measures {
     }
 }
 
-/// Every key as a path: `cost.chunks[].name`.
-fn paths(value: &Value, at: &str, into: &mut BTreeSet<String>) {
-    match value {
-        Value::Object(map) => {
-            for (key, value) in map {
-                let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
-                into.insert(path.clone());
-                paths(value, &path, into);
-            }
-        }
-        Value::Array(items) => items.iter().for_each(|item| paths(item, &format!("{at}[]"), into)),
-        _ => {}
-    }
-}
-
 #[test]
 fn every_key_is_documented_and_nothing_else() {
-    let mut written = BTreeSet::new();
-    paths(&serde_json::to_value(sound()).unwrap(), "", &mut written);
-    let document = include_str!("../../../docs/measure-schema.md");
-    let rows = document.lines().filter_map(|line| line.strip_prefix("| `"));
-    let documented: BTreeSet<String> =
-        rows.filter_map(|row| row.split('`').next()).map(str::to_owned).collect();
-    assert_eq!(documented, written);
-    assert!(document.contains(SCHEMA));
+    assert_documented(sound(), &[], include_str!("../../../docs/measure-schema.md"), SCHEMA);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-use super::{Seen, seen};
+use super::{Drawn, Seen, seen};
 use crate::measure::measures::ViewMeasures;
 use crate::measure::views::{SIDE, View, views};
 use crate::model::asset::{Accuracy, Asset};
@@ -62,7 +62,9 @@ fn asset(splats: Vec<Splat>) -> Asset {
 }
 
 fn look(splats: Vec<Splat>, model: Model<'_>) -> Seen {
-    seen(&asset(splats), &Prepared::new(model, &Style::default()), &views(model)).unwrap()
+    let input = Prepared::new(model, &Style::default());
+    let drawn: Vec<Drawn> = views(model).into_iter().map(|view| Drawn::new(&input, view).unwrap()).collect();
+    seen(&asset(splats), &drawn).unwrap()
 }
 
 /// Where the views from `+Z` and `-Z` are among the 26.

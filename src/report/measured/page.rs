@@ -7,12 +7,12 @@ use image::RgbImage;
 
 use crate::error::Result;
 use crate::format;
+use crate::measure::Reference;
 use crate::measure::image as difference;
 use crate::measure::measures::{Measures, ViewMeasures};
-use crate::measure::seen::{self, Pair};
-use crate::measure::views::{self, SIDE, View};
-use crate::measure::{Subject, align};
-use crate::render::input::{Prepared, Style};
+use crate::measure::seen::{self, Compared, Drawn};
+use crate::measure::views::SIDE;
+use crate::model::asset::Asset;
 use crate::report::page::{self, Mark, Number, Page, Picture};
 use crate::report::png;
 
@@ -30,28 +30,28 @@ const NEAR: u32 = 3;
 const NAMED: usize = 16;
 
 /// Writes `measures.json`, `index.html` and the pictures of each view with holes, and of the
-/// view with the greatest mean FLIP. `names` are those of the file and of the input.
+/// view with the greatest mean FLIP. The reference lies in the asset's frame; `names` are those
+/// of the file and of the input.
 ///
 /// # Errors
-/// [`crate::Error::Io`]; those of measuring, for a subject that the measures are not of.
+/// [`crate::Error::Io`].
 pub fn write_page(
     measures: &Measures,
-    subject: &Subject<'_>,
+    asset: &Asset,
+    reference: &Reference<'_>,
     names: [&Path; 2],
     directory: &Path,
 ) -> Result<PathBuf> {
     std::fs::create_dir_all(directory).map_err(crate::Error::io(directory))?;
     format::write_file(&directory.join("measures.json"), measures.json()?.as_bytes())?;
-    let aligned = align::align(subject.against, subject.asset)?;
-    let input = Prepared::new(aligned.model(), &Style::default());
-    let greatest = measures.views.iter().map(|view| view.flip_mean).fold(0.0, f64::max);
+    let greatest = measures.views.iter().map(|view| view.image.flip_mean).fold(0.0, f64::max);
     let mut sections = Vec::with_capacity(measures.views.len());
-    for (view, found) in views::views(aligned.model()).iter().zip(&measures.views) {
+    for (input, found) in reference.drawn.iter().zip(&measures.views) {
         let mut section = section(found);
         // Of several views with the greatest difference, the first is enough; none may have any.
-        let worst = found.flip_mean >= greatest && greatest > 0.0;
+        let worst = found.image.flip_mean >= greatest && greatest > 0.0;
         if faulty(found) || found.through > 0 || worst {
-            illustrate(&mut section, view, &seen::draw(subject.asset, &input, view)?, directory)?;
+            illustrate(&mut section, input, &seen::compare(asset, input)?, directory)?;
         }
         sections.push(section);
     }
@@ -90,42 +90,41 @@ fn section(view: &ViewMeasures) -> page::View {
             none("missing", view.missing),
             none("extra", view.extra),
             told("through", view.through.to_string()),
-            told("FLIP mean", format!("{:.5}", view.flip_mean)),
-            told("FLIP p99", format!("{:.4}", view.flip_p99)),
-            told("PSNR", format!("{:.1} dB", view.psnr)),
-            told("SSIM", format!("{:.4}", view.ssim)),
-            told("normals FLIP", format!("{:.5}", view.normal_flip_mean)),
+            told("FLIP mean", format!("{:.5}", view.image.flip_mean)),
+            told("FLIP p99", format!("{:.4}", view.image.flip_p99)),
+            told("PSNR", format!("{:.1} dB", view.image.psnr)),
+            told("SSIM", format!("{:.4}", view.image.ssim)),
+            told("normals FLIP", format!("{:.5}", view.image.normal_flip_mean)),
         ],
         ..page::View::default()
     }
 }
 
 /// Adds the pictures of a view, the place to look at and the splats that are seen there.
-fn illustrate(section: &mut page::View, view: &View, pair: &Pair, directory: &Path) -> Result<()> {
-    let [input, splats] = &pair.shaded;
-    let heat = difference::flip(input, splats)?.heat_map(BRIGHTEST);
-    let marked = pair.holes.picture(splats);
+fn illustrate(section: &mut page::View, input: &Drawn, splats: &Compared, directory: &Path) -> Result<()> {
+    let heat = difference::flip(&input.shaded, &splats.shaded)?.heat_map(BRIGHTEST);
+    let marked = splats.holes.picture(&splats.shaded);
     let four: [(&'static str, &str, &RgbImage); 4] = [
         ("faults: red missing, blue extra, orange through", "holes", &marked),
-        ("input", "input", input),
-        ("splats", "splats", splats),
+        ("input", "input", &input.shaded),
+        ("splats", "splats", &splats.shaded),
         ("FLIP heat map: black is equal, yellow 0.25 and more", "heat", &heat),
     ];
     for (caption, suffix, picture) in four {
-        let file = format!("{}-{suffix}.png", view.name);
+        let file = format!("{}-{suffix}.png", input.view.name);
         png::write(&directory.join(&file), picture)?;
         section.pictures.push(Picture { caption, file });
     }
-    section.mark = mark(pair);
-    section.notes.extend(nearby(pair));
+    section.mark = mark(splats);
+    section.notes.extend(nearby(splats));
     Ok(())
 }
 
 /// The part of the view with the most faults; the first such in reading order.
-fn mark(pair: &Pair) -> Option<Mark> {
+fn mark(seen: &Compared) -> Option<Mark> {
     let step = PART / 2;
     let mut counts: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-    for (x, y) in pair.holes.faults() {
+    for (x, y) in seen.holes.faults() {
         let last = (SIDE - PART) / step;
         let parts = |at: u32| (at / step).saturating_sub(1)..=(at / step).min(last);
         for part in parts(y).flat_map(|row| parts(x).map(move |column| (row, column))) {
@@ -139,14 +138,14 @@ fn mark(pair: &Pair) -> Option<Mark> {
 }
 
 /// The splats seen nearest the most faults.
-fn nearby(pair: &Pair) -> Option<String> {
+fn nearby(compared: &Compared) -> Option<String> {
     let mut seen: BTreeMap<u32, usize> = BTreeMap::new();
-    for (x, y) in pair.holes.faults() {
+    for (x, y) in compared.holes.faults() {
         let rows = y.saturating_sub(NEAR)..=y + NEAR;
         let around = rows.flat_map(|y| (x.saturating_sub(NEAR)..=x + NEAR).map(move |x| (x, y)));
         let mut here: Vec<u32> = around
             .filter(|&(x, y)| x < SIDE && y < SIDE)
-            .filter_map(|(x, y)| pair.splats.at(x, y))
+            .filter_map(|(x, y)| compared.splats.at(x, y))
             .map(|hit| hit.index)
             .collect();
         here.sort_unstable();
