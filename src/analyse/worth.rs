@@ -196,3 +196,65 @@ impl Patches<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Steps along a prism.
+    const LENGTH: u32 = 40;
+
+    /// A prism over a profile of places `(x, y)`, in steps of half a unit.
+    fn prism(profile: &[(f32, f32)]) -> Welded {
+        let rows = (0..=LENGTH)
+            .flat_map(|step| profile.iter().map(move |&(x, y)| Vec3::new(x, y, 0.5 * step as f32)));
+        let across = profile.len() as u32;
+        let triangles = (0..LENGTH)
+            .flat_map(|step| (0..across - 1).map(move |n| step * across + n))
+            .flat_map(|at| [[at, at + 1, at + across], [at + 1, at + across + 1, at + across]]);
+        Welded { positions: rows.collect(), triangles: triangles.collect(), ..Welded::default() }
+    }
+
+    /// Edges kept of those along a prism at one place of its profile, and how many there are.
+    fn kept(profile: &[(f32, f32)], crease: u32) -> (usize, usize) {
+        let welded = prism(profile);
+        let edges = Edges::of(&welded.triangles);
+        let across = profile.len() as u32;
+        let along = |v: u32| v % across == crease;
+        let mut marked: Vec<bool> = edges.edges.iter().map(|edge| edge.ends.into_iter().all(along)).collect();
+        let all = marked.iter().filter(|mark| **mark).count();
+        // A splat that is a plane through the mean.
+        let misfit = |places: &[DVec3], normal: DVec3| {
+            let mean = places.iter().sum::<DVec3>() / places.len() as f64;
+            places.iter().map(|place| (*place - mean).dot(normal).abs()).fold(0.0, f64::max)
+        };
+        let worth = Worth { reach: 6.0, max_error: 0.2, misfit: &misfit };
+        drop_needless(&welded, &edges, &worth, &mut marked);
+        (marked.iter().filter(|mark| **mark).count(), all)
+    }
+
+    #[test]
+    fn the_edge_of_two_planes_is_worth_a_cut() {
+        let roof: Vec<(f32, f32)> =
+            (-10..=10_i8).map(|n| (f32::from(n), -0.5 * f32::from(n).abs())).collect();
+        assert_eq!(kept(&roof, 10), (LENGTH as usize, LENGTH as usize));
+    }
+
+    #[test]
+    fn a_ridge_lower_than_the_bound_is_not() {
+        let ridge: Vec<(f32, f32)> =
+            (-50..=50_i8).map(|n| (0.2 * f32::from(n), if n == 0 { 0.15 } else { 0.0 })).collect();
+        assert_eq!(kept(&ridge, 50), (0, LENGTH as usize));
+    }
+
+    #[test]
+    fn a_facet_s_edge_of_a_rod_is_not() {
+        // Eight facets to a half turn, nowhere flatter than at the edge that is looked at.
+        let rod: Vec<(f32, f32)> = (0..=8_u8)
+            .map(|n| std::f32::consts::PI * f32::from(n) / 8.0)
+            .map(|angle| (-2.0 * angle.cos(), 2.0 * angle.sin()))
+            .collect();
+        assert_eq!(kept(&rod, 4), (0, LENGTH as usize));
+    }
+}

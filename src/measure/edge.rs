@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::border::Kind;
 use super::box_tree::BoxTree;
+use super::covered::Insides;
 use super::measures::Distances;
 use super::patch::Patch;
 use super::segment::on_line;
@@ -19,6 +20,9 @@ const MOST: usize = 100_000;
 /// error bound.
 const CHORD_SHARE: f64 = 0.01;
 
+/// Error bounds within which a splat's clipped border touches a line.
+const TOUCH: f64 = 2.0;
+
 /// Lines that one piece of a border becomes, at most.
 const MOST_CHORDS: f64 = 64.0;
 
@@ -27,7 +31,8 @@ type Line = [DVec3; 2];
 /// The two-sided distance between feature lines and the splats' clipped borders, model units.
 ///
 /// The borders are the parts of the clip curves that lie inside their splat's ellipse and are not
-/// cut away by its other curves. Samples lie equally spaced, at the same step, along the lines and
+/// cut away by its other curves, of all splats that touch a line with any of them. Where such a part runs through the inside of another splat, it
+/// bounds nothing that shows, as beyond the end of a line, and is left out. Samples lie equally spaced, at the same step, along the lines and
 /// along all borders; `rms` and `p99` are over both together. Each is compared with the nearest of
 /// the other kind, wherever that lies: an edge that no splat is cut at is as far off as the next
 /// border. Where nothing at all is cut, every sample of the lines is one diagonal off.
@@ -37,16 +42,29 @@ type Line = [DVec3; 2];
 pub fn edge(asset: &Asset, lines: &[Vec<DVec3>]) -> Option<Distances> {
     let lines: Vec<Line> =
         lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]]).collect();
-    let borders: Vec<Line> =
-        asset.splats.par_iter().flat_map_iter(|splat| borders(&Patch::new(splat), asset.max_error)).collect();
+    let borders: Vec<Vec<Line>> =
+        asset.splats.par_iter().map(|splat| borders(&Patch::new(splat), asset.max_error)).collect();
+    let borders = touching(borders, &lines, TOUCH * asset.max_error);
     let step = length(&lines).max(length(&borders)) / MOST as f64;
     let on_lines = spaced(&lines, step);
     if on_lines.is_empty() {
         return None;
     }
     let mut samples = one_sided(&on_lines, &borders, asset.diagonal);
-    samples.extend(one_sided(&spaced(&borders, step), &lines, asset.diagonal));
+    let insides = Insides::new(asset);
+    let bordering = spaced(&borders, step).into_par_iter().filter(|&place| !insides.hold(place));
+    samples.extend(one_sided(&bordering.collect::<Vec<_>>(), &lines, asset.diagonal));
     Some(spread::distances(&samples))
+}
+
+/// The borders of those splats whose own come this close to a line.
+fn touching(borders: Vec<Vec<Line>>, lines: &[Line], reach: f64) -> Vec<Line> {
+    let tree = tree(lines);
+    let near = |place: &DVec3| {
+        tree.nearest(*place, reach, |line, _| Some((distance(lines[line as usize], *place), ()))).is_some()
+    };
+    let touches = |borders: &Vec<Line>| spaced(borders, reach).iter().any(near);
+    borders.into_par_iter().filter(touches).flatten_iter().collect()
 }
 
 /// The clipped borders of a patch as straight lines.
@@ -89,15 +107,20 @@ fn spaced(lines: &[Line], step: f64) -> Vec<DVec3> {
 
 /// Distances from places to the nearest line, `far` where there is none.
 fn one_sided(places: &[DVec3], lines: &[Line], far: f64) -> Vec<Sample> {
-    let tree = BoxTree::new(lines.iter().map(|[a, b]| Some((a.min(*b), a.max(*b)))));
-    let distance = |&place: &DVec3| {
-        let to = |line: u32, _: f64| {
-            let [a, b] = lines[line as usize];
-            Some((on_line(a, b, place).distance(place), ()))
-        };
+    let tree = tree(lines);
+    let sample = |&place: &DVec3| {
+        let to = |line: u32, _: f64| Some((distance(lines[line as usize], place), ()));
         (tree.nearest(place, f64::INFINITY, to).map_or(far, |found| found.distance), 1.0)
     };
-    places.par_iter().map(distance).collect()
+    places.par_iter().map(sample).collect()
+}
+
+fn tree(lines: &[Line]) -> BoxTree {
+    BoxTree::new(lines.iter().map(|[a, b]| Some((a.min(*b), a.max(*b)))))
+}
+
+fn distance([a, b]: Line, place: DVec3) -> f64 {
+    on_line(a, b, place).distance(place)
 }
 
 #[cfg(test)]

@@ -6,11 +6,20 @@ use glam::DVec2;
 use super::super::planted::{asset, flat};
 use super::*;
 use crate::model::clip_curve::ClipCurve;
+use crate::model::splat::Splat;
 
 /// A disc around the origin, cut along `y = at`: what lies below is gone.
-fn cut(at: f64) -> crate::model::splat::Splat {
+fn cut(at: f64) -> Splat {
     let angle = at.asin();
     flat(DVec3::ZERO, DVec2::ONE, vec![ClipCurve::chord(std::f64::consts::PI - angle, angle)])
+}
+
+/// The same, and what lies above `y = high` is gone too.
+fn strip(low: f64, high: f64) -> Splat {
+    let angle = high.asin();
+    let mut splat = cut(low);
+    splat.clips.push(ClipCurve::chord(angle, std::f64::consts::PI - angle));
+    splat
 }
 
 fn line(y: f64, half: f64) -> Vec<DVec3> {
@@ -33,8 +42,14 @@ fn an_edge_without_a_cut_and_a_cut_without_an_edge_are_seen() {
     assert!((found.max - 0.7).abs() < 1e-9, "{found:?}");
     // The longer side has 2 + 1, the borders 2.
     assert!((found.rms - (0.49_f64 / 5.0).sqrt()).abs() < 1e-4, "{found:?}");
-    let found = edge(&asset(vec![cut(0.0), cut(-0.6)]), &both[..1]).unwrap();
+    let found = edge(&asset(vec![strip(0.0, 0.6)]), &both[..1]).unwrap();
     assert!((found.max - 0.6).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn splats_that_touch_no_line_do_not_count() {
+    let found = edge(&asset(vec![cut(0.0), cut(-0.6)]), &[line(0.0, 1.0)]).unwrap();
+    assert!(found.max < 1e-9, "{found:?}");
 }
 
 #[test]
@@ -55,4 +70,14 @@ fn only_what_is_left_of_a_border_counts() {
     let lines = [vec![DVec3::NEG_X, DVec3::ZERO, DVec3::Y]];
     let found = edge(&asset(vec![splat]), &lines).unwrap();
     assert!(found.max < 1e-9, "{found:?}");
+}
+
+#[test]
+fn a_border_inside_another_splat_bounds_nothing() {
+    let over = flat(DVec3::new(0.0, 0.6, 0.0), DVec2::new(2.0, 0.3), vec![]);
+    let lifted = Splat { center: over.center + 0.2 * DVec3::Z, ..over.clone() };
+    let off = |splats| edge(&asset(splats), &[line(0.0, 1.0)]).unwrap().max;
+    assert!((off(vec![strip(0.0, 0.6)]) - 0.6).abs() < 1e-9);
+    assert!(off(vec![strip(0.0, 0.6), over]) < 1e-9);
+    assert!((off(vec![strip(0.0, 0.6), lifted]) - 0.6).abs() < 1e-9, "another sheet");
 }

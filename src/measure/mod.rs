@@ -7,6 +7,7 @@ mod box_tree;
 mod climb;
 mod cloud_fit;
 pub mod cost;
+mod covered;
 #[cfg(test)]
 pub(crate) mod documented;
 pub mod edge;

@@ -219,3 +219,34 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat3, DVec2, DVec3};
+
+    fn candidate(pieces: &[u32]) -> Candidate {
+        let splat = Splat {
+            center: DVec3::ZERO,
+            axes: DMat3::IDENTITY,
+            radii: DVec2::ONE,
+            curvature: DVec2::ZERO,
+            clips: Vec::new(),
+            color: [u8::MAX; 3],
+        };
+        Candidate { splat, pieces: pieces.to_vec(), rank: 6 }
+    }
+
+    #[test]
+    fn what_splats_alone_cover_is_what_their_successor_must() {
+        let candidates = vec![candidate(&[0, 1, 2]), candidate(&[2, 3]), candidate(&[1, 3, 4])];
+        let mut cover =
+            Cover { candidates, chosen: vec![0, 1, 2], times: vec![1, 2, 2, 2, 1], areas: vec![1.0; 5] };
+        assert_eq!((cover.own(&[0]), cover.own(&[1]), cover.own(&[0, 1])), (vec![0], vec![], vec![0, 2]));
+        assert!(cover.serves(&[0, 1], &candidate(&[0, 2])) && !cover.serves(&[0, 1], &candidate(&[0, 1])));
+        cover.replace(&[0, 1], candidate(&[0, 2]));
+        cover.chosen.retain(|&index| index > 1);
+        assert_eq!((cover.times.as_slice(), cover.chosen.as_slice()), (&[1, 1, 1, 1, 1][..], &[2, 3][..]));
+        assert_eq!(cover.drop_redundant(), 0);
+    }
+}

@@ -66,9 +66,12 @@ fn inside(facet: &[DVec3; 3], curvature: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analyse::canonical::mix;
 
+    /// Within `[-1, 1]`.
     fn random(seed: u32, k: u32) -> f64 {
-        f64::from((seed * 16 + k).wrapping_mul(2_654_435_769) >> 8) / f64::from(1 << 23) - 1.0
+        let bits = mix(u64::from(seed * 16 + k)) >> 11;
+        bits as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
     /// The largest distance over places of a facet inside an ellipse, `edges` alone or all.

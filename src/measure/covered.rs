@@ -1,0 +1,60 @@
+//! Which places of clipped borders lie inside another splat, where they bound nothing.
+
+use glam::{DVec2, DVec3};
+
+use super::box_tree::BoxTree;
+use crate::model::asset::Asset;
+use crate::model::clip_curve::Conic;
+use crate::model::splat::Splat;
+
+/// Error bounds by which a place must lie inside another splat's border. At a feature edge both
+/// sides are cut at most one bound outside the line, so that each passes over the other's border
+/// by less.
+const INSIDE: f64 = 3.0;
+
+/// Error bounds that two splats over one place may lie apart.
+const APART: f64 = 2.0;
+
+/// Directions in which the border is looked for.
+const AROUND: u32 = 8;
+
+/// The splats of an asset, to be asked what lies inside them.
+pub(super) struct Insides<'a> {
+    splats: Vec<(&'a Splat, Vec<Conic>)>,
+    tree: BoxTree,
+    max_error: f64,
+}
+
+impl<'a> Insides<'a> {
+    pub(super) fn new(asset: &'a Asset) -> Self {
+        let conics = |splat: &Splat| splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+        let splats = asset.splats.iter().map(|splat| (splat, conics(splat))).collect();
+        let around = |splat: &Splat| {
+            let reach = DVec3::splat(splat.bounding_radius());
+            Some((splat.center - reach, splat.center + reach))
+        };
+        let tree = BoxTree::new(asset.splats.iter().map(around));
+        Self { splats, tree, max_error: asset.max_error }
+    }
+
+    /// Whether a place lies well inside some splat.
+    pub(super) fn hold(&self, place: DVec3) -> bool {
+        self.tree.near(place, 0.0).any(|index| self.inside(index, place))
+    }
+
+    fn inside(&self, index: u32, place: DVec3) -> bool {
+        let (splat, conics) = &self.splats[index as usize];
+        let margin = INSIDE * self.max_error;
+        let local = splat.to_local(place);
+        let uv = local.truncate();
+        let inner = splat.radii - margin;
+        let around = (0..AROUND).map(|n| {
+            let angle = std::f64::consts::TAU * f64::from(n) / f64::from(AROUND);
+            uv + margin * DVec2::new(libm::cos(angle), libm::sin(angle))
+        });
+        inner.min_element() > 0.0
+            && (uv / inner).length_squared() <= 1.0
+            && (local.z - splat.height(uv)).abs() <= APART * self.max_error
+            && around.chain([uv]).all(|uv| !conics.iter().any(|conic| conic.cuts(uv)))
+    }
+}
