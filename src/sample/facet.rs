@@ -99,8 +99,13 @@ mod tests {
         for seed in 0..4000 {
             let value = |k: u32| random(seed, k);
             let corner = |k: u32| DVec3::new(value(k), value(k + 1), 0.2 * value(k + 2));
-            let facet = [corner(0), corner(3), corner(6)];
-            let curvature = DVec2::new(2.0 * value(9), 2.0 * value(10));
+            let mut facet = [corner(0), corner(3), corner(6)];
+            let mut curvature = DVec2::new(2.0 * value(9), 2.0 * value(10));
+            if seed % 2 == 1 {
+                // Inscribed in a bowl, facets are farthest inside.
+                curvature = curvature.abs();
+                facet = facet.map(|p| p.with_z(form(curvature, p.truncate())));
+            }
             let radii = DVec2::new(1.0 + 0.6 * value(11), 1.0 + 0.6 * value(12));
             let whole = facet.iter().all(|p| (p.truncate() / radii).length_squared() <= 1.0);
             let found = farthest(&facet, curvature, radii);
