@@ -103,11 +103,10 @@ pub fn cover(
 impl Cover {
     /// The pieces that no other splat covers than these, ascending.
     pub(super) fn own(&self, these: &[usize]) -> Vec<u32> {
-        let mut pieces: Vec<u32> =
-            these.iter().flat_map(|&index| self.candidates[index].pieces.iter().copied()).collect();
-        pieces.sort_unstable();
-        let same = pieces.chunk_by(|a, b| a == b);
-        same.filter(|same| self.times[same[0] as usize] as usize == same.len()).map(|same| same[0]).collect()
+        let lists = these.iter().map(|&index| self.candidates[index].pieces.as_slice());
+        let counted = lists.fold(Vec::new(), |counted, pieces| merged(&counted, pieces));
+        let own = counted.into_iter().filter(|&(piece, count)| self.times[piece as usize] == count);
+        own.map(|(piece, _)| piece).collect()
     }
 
     /// The area of the pieces that only this splat covers.
@@ -157,6 +156,22 @@ impl Cover {
         dropped.sort_unstable();
         self.chosen.retain(|index| dropped.binary_search(index).is_err());
         dropped.len()
+    }
+}
+
+/// Pieces, ascending, each with how often it was met, and met once more in another list.
+fn merged(counted: &[(u32, u32)], pieces: &[u32]) -> Vec<(u32, u32)> {
+    let mut merged = Vec::with_capacity(counted.len() + pieces.len());
+    let (mut old, mut new) = (counted.iter().peekable(), pieces.iter().peekable());
+    loop {
+        let piece = match (old.peek(), new.peek()) {
+            (None, None) => return merged,
+            (Some(&&(piece, _)), None) | (None, Some(&&piece)) => piece,
+            (Some(&&(one, _)), Some(&&other)) => one.min(other),
+        };
+        let before = old.next_if(|entry| entry.0 == piece).map_or(0, |entry| entry.1);
+        let here = u32::from(new.next_if(|next| **next == piece).is_some());
+        merged.push((piece, before + here));
     }
 }
 

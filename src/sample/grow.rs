@@ -112,7 +112,7 @@ impl Grower<'_> {
     /// not keep the budget.
     pub fn grow(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
         let seeds = self.surface.pieces[piece as usize];
-        self.starts(piece).into_iter().find_map(|(pose, radii)| {
+        self.starts(piece).find_map(|(pose, radii)| {
             let least = self.attempt(&pose, radii, &seeds, region).ok()?;
             let best = self.enlarged(least, &seeds, region);
             settle(self, best, &seeds, piece, region)
@@ -153,7 +153,7 @@ impl Grower<'_> {
 
     /// Poses at the middle of a piece, each with the least radii worth trying: first a disc, then,
     /// for a triangle, an ellipse as slender as it is. Beside a fold the disc may be too wide.
-    fn starts(&self, piece: u32) -> [(Pose, DVec2); 2] {
+    fn starts(&self, piece: u32) -> impl Iterator<Item = (Pose, DVec2)> {
         let corners = self.surface.pieces[piece as usize];
         let normal: DVec3 = corners.iter().map(|&corner| self.surface.normal(corner)).sum();
         let pose = Pose::at(self.surface.middle(piece), normal);
@@ -163,7 +163,8 @@ impl Grower<'_> {
         let margin = self.surface.piece_margin(piece);
         let floor = (LEAST_MARGINS * margin).max(LEAST_SHARE * self.budget.fit);
         let least = |radii: DVec2| (LEAST_OUTSET * radii).max(DVec2::splat(floor));
-        [(pose, least(DVec2::splat(reach))), (pose.turned(theta), least(radii))]
+        let slender = (reach > 0.0).then(|| (pose.turned(theta), least(radii)));
+        std::iter::once((pose, least(DVec2::splat(reach)))).chain(slender)
     }
 
     /// Fits a splat to what an ellipse reaches; why not, if it does not keep the budget.

@@ -31,15 +31,14 @@ const FARTHEST: f64 = 1.2;
 struct Thoroughness {
     /// Passes over all splats.
     passes: usize,
-    /// Neighbours that a splat is tried with in one pass, those first whose own pieces lie
-    /// closest together.
+    /// Neighbours that a splat is tried with in one pass, the nearest first.
     partners: usize,
 }
 
 impl Thoroughness {
     fn of(effort: u8) -> Self {
-        let effort = usize::from(effort);
-        Self { passes: effort - 1, partners: effort.div_ceil(2) }
+        let half = usize::from(effort).div_ceil(2);
+        Self { passes: half, partners: half }
     }
 }
 
@@ -115,14 +114,9 @@ impl Search<'_> {
         if !self.alive[index] {
             return None;
         }
-        let near = self.neighbours(index);
-        let mut pairs: Vec<(f64, usize, Need)> =
-            near.into_iter().filter_map(|other| self.pair(index, other)).collect();
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let merger = pairs
-            .into_iter()
-            .take(partners)
-            .find_map(|(_, other, need)| self.move_to(&need, vec![index, other], region));
+        let nearest = self.neighbours(index).into_iter().take(partners);
+        let mut mergers = nearest.filter_map(|other| Some((other, self.pair(index, other)?)));
+        let merger = mergers.find_map(|(other, need)| self.move_to(&need, vec![index, other], region));
         merger.or_else(|| {
             let axes = self.cover.candidates[index].splat.axes;
             let need = Need::new(self.grower.surface, self.cover.own(&[index]), axes)?;
@@ -130,23 +124,27 @@ impl Search<'_> {
         })
     }
 
-    /// Those chosen that cover some of what a splat covers, ascending.
+    /// Those chosen that cover some of what a splat covers, the nearest centre first.
     fn neighbours(&self, index: usize) -> Vec<usize> {
         let pieces = self.cover.candidates[index].pieces.iter();
         let mut near: Vec<u32> = pieces.flat_map(|&piece| self.owners.row(piece)).copied().collect();
         near.sort_unstable();
         near.dedup();
-        let near = near.into_iter().map(|other| other as usize);
-        near.filter(|&other| other != index && self.alive[other]).collect()
+        let center = |of: usize| self.cover.candidates[of].splat.center;
+        let away = |other: usize| center(other).distance_squared(center(index));
+        let mut near: Vec<usize> = near.into_iter().map(|other| other as usize).collect();
+        near.retain(|&other| other != index && self.alive[other]);
+        near.sort_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
+        near
     }
 
-    /// What only two splats cover, and how far it reaches; `None` if too far for one.
-    fn pair(&self, index: usize, other: usize) -> Option<(f64, usize, Need)> {
+    /// What only two splats cover; `None` if it reaches too far for one.
+    fn pair(&self, index: usize, other: usize) -> Option<Need> {
         let [one, two] = [index, other].map(|of| &self.cover.candidates[of].splat);
         let larger = if one.radii.element_product() >= two.radii.element_product() { one } else { two };
         let need = Need::new(self.grower.surface, self.cover.own(&[index, other]), larger.axes)?;
         let most = FARTHEST * one.radii.max(two.radii).max_element();
-        (need.reach <= most).then_some((need.reach, other, need))
+        (need.reach <= most).then_some(need)
     }
 
     /// A splat for a need in the place of those it comes from, if it costs no more: for one it
