@@ -25,7 +25,7 @@ pub struct Budget {
 }
 
 /// Share of the bound that domains are padded by.
-const PAD_SHARE: f64 = 0.5;
+const PAD_SHARE: f64 = 0.75;
 
 /// No radius is padded by more than this share of itself.
 const PAD_RADIUS_SHARE: f64 = 0.25;
@@ -51,7 +51,13 @@ impl Budget {
     /// so that neighbours overlap by more than the distance their surfaces may lie apart.
     #[must_use]
     pub fn padded(&self, trusted: DVec2) -> DVec2 {
-        trusted + (PAD_RADIUS_SHARE * trusted).min(DVec2::splat(self.pad))
+        self.padded_by(trusted, self.pad)
+    }
+
+    /// The same with a padding other than the least.
+    #[must_use]
+    pub fn padded_by(&self, trusted: DVec2, pad: f64) -> DVec2 {
+        trusted + (PAD_RADIUS_SHARE * trusted).min(DVec2::splat(pad))
     }
 
     /// The ellipse that a splat is trusted to cover: the inverse of [`Self::padded`].

@@ -16,6 +16,10 @@ use crate::tolerance::FIT_SHARE;
 /// A domain that does not hold when rounded shrinks by this factor, so many times.
 const SHRINK: (f64, usize) = (0.95, 10);
 
+/// A splat is padded by this many times the least padding, if it keeps the budget so: rays that
+/// pass between two splats at a slant need the more of either the flatter they are.
+const MORE_PAD: f64 = 2.0;
+
 /// A rounded splat may use the whole budget, less this share for the rounding of arithmetic.
 const ROUNDED_SLACK: f64 = (1.0 - 1e-6) / FIT_SHARE;
 
@@ -48,9 +52,12 @@ pub(super) fn settle(
         let plane = (sagitta <= FLAT_SAGITTA * grower.budget.fit).then_some(DVec2::ZERO);
         let quadric = (domain.curvature != DVec2::ZERO).then_some(domain.curvature);
         for curvature in plane.into_iter().chain(quadric) {
-            let found = rounded(grower, &domain.pose, outer, curvature)
-                .and_then(|splat| finish(grower, splat, domain.rank, seeds, region))
-                .filter(|candidate| candidate.pieces.binary_search(&piece).is_ok());
+            let found = [MORE_PAD * grower.budget.pad, grower.budget.pad].into_iter().find_map(|pad| {
+                let more = grower.budget.padded_by(domain.radii, pad) - outer;
+                rounded(grower, &domain.pose, outer + more, curvature)
+                    .and_then(|splat| finish(grower, splat, more, domain.rank, seeds, region))
+                    .filter(|candidate| candidate.pieces.binary_search(&piece).is_ok())
+            });
             if found.is_some() {
                 return found;
             }
@@ -72,10 +79,12 @@ pub(super) fn rounded(grower: &Grower, pose: &Pose, radii: DVec2, curvature: DVe
     })
 }
 
-/// Judges and cuts a rounded splat; `None` if it does not keep the budget.
+/// Judges and cuts a rounded splat; `None` if it does not keep the budget. `more` is by how much its
+/// radii go on beyond the padding that every splat has.
 fn finish(
     grower: &Grower,
     mut splat: Splat,
+    more: DVec2,
     rank: u8,
     seeds: &[u32],
     region: &mut Region,
@@ -88,7 +97,8 @@ fn finish(
         return None;
     }
     let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
-    let domain = Covering { grower, splat: &splat, conics };
+    let trusted = grower.budget.trusted(splat.radii - more);
+    let domain = Covering { grower, splat: &splat, conics, trusted };
     let meshed = grower.surface.spots.is_empty();
     let pieces = if meshed { domain.triangles(region) } else { domain.spots(region) }?;
     splat.color = mean_color(grower, &pieces);
@@ -100,13 +110,14 @@ struct Covering<'a> {
     grower: &'a Grower<'a>,
     splat: &'a Splat,
     conics: Vec<Conic>,
+    /// Radii of the ellipse that is trusted to cover.
+    trusted: DVec2,
 }
 
 impl Covering<'_> {
     /// Whether a place lies within the domain by a margin, near the quadric and not cut away.
     fn covers(&self, local: DVec3, margin: f64) -> bool {
-        let trusted = self.grower.budget.trusted(self.splat.radii);
-        disc_inside(local.truncate(), margin, trusted)
+        disc_inside(local.truncate(), margin, self.trusted)
             && self.grower.near(self.splat.curvature, local, ROUNDED_SLACK)
             && !self.cuts(local.truncate())
     }
