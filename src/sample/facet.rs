@@ -114,7 +114,7 @@ mod tests {
             // The places looked at lie a sixtieth apart; those on the rim itself are between them.
             assert!(found <= brute + if whole { 2e-3 } else { 0.2 }, "{found} {brute} {facet:?}");
             partial += u32::from(!whole);
-            bulging += u32::from(whole && inside(&facet, curvature) == found);
+            bulging += u32::from(whole && inside(&facet, curvature) >= found);
         }
         assert!(partial > 500 && bulging > 50, "{partial} {bulging}");
     }
