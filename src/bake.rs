@@ -164,7 +164,7 @@ impl Default for Options {
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `sample`, `clip`, `encode`, `write`).
+    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `encode`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
     fn advance(&mut self, done: u64, total: u64);

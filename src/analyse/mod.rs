@@ -14,6 +14,7 @@ pub mod given_lines;
 pub mod line_cut;
 pub mod line_network;
 pub mod line_sheets;
+pub mod marks;
 pub mod mesh_surface;
 pub mod nearest;
 pub mod orient;

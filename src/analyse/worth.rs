@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
 use super::edges::{Edges, face_normals};
+use super::marks::Marks;
 use super::surface::NONE;
 use super::weld::Welded;
 
@@ -67,7 +68,7 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: 
     let needless: Vec<bool> = chains
         .par_iter()
         .map_init(
-            || Visited::new(welded.triangles.len()),
+            || Marks::new(welded.triangles.len()),
             |visited, chain| {
                 let every = chain.edges.len().div_ceil(LOOKED_AT);
                 let looked_at = chain.edges.iter().skip(every / 2).step_by(every);
@@ -91,31 +92,6 @@ fn sides(edges: &Edges, faces: usize) -> Vec<[u32; 3]> {
     sides
 }
 
-/// Faces that a walk has met; reused from walk to walk.
-struct Visited {
-    stamps: Vec<u32>,
-    stamp: u32,
-}
-
-impl Visited {
-    fn new(faces: usize) -> Self {
-        Self { stamps: vec![0; faces], stamp: 0 }
-    }
-
-    fn clear(&mut self) {
-        if self.stamp == u32::MAX {
-            self.stamps.fill(0);
-            self.stamp = 0;
-        }
-        self.stamp += 1;
-    }
-
-    /// Marks a face; whether it was new.
-    fn mark(&mut self, face: u32) -> bool {
-        std::mem::replace(&mut self.stamps[face as usize], self.stamp) != self.stamp
-    }
-}
-
 /// Where patches are cut out of a mesh.
 struct Patches<'a> {
     welded: &'a Welded,
@@ -137,7 +113,7 @@ struct Disc {
 
 impl Patches<'_> {
     /// Whether splats that stop at an edge reach farther than one that goes over it.
-    fn is_sharp(&self, index: u32, worth: &Worth<'_>, visited: &mut Visited) -> bool {
+    fn is_sharp(&self, index: u32, worth: &Worth<'_>, visited: &mut Marks) -> bool {
         let edge = &self.edges.edges[index as usize];
         let Some((left, right)) = self.edges.pair(edge) else { return true };
         let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());
@@ -158,9 +134,9 @@ impl Patches<'_> {
 
     /// Places within a disc on the faces that the surface joins to some, and the mean of those
     /// faces' normals; `None` if it folds over.
-    fn patch(&self, disc: &Disc, from: &[u32], visited: &mut Visited) -> Option<(Vec<DVec3>, DVec3)> {
+    fn patch(&self, disc: &Disc, from: &[u32], visited: &mut Marks) -> Option<(Vec<DVec3>, DVec3)> {
         visited.clear();
-        let mut open: Vec<u32> = from.iter().copied().filter(|&face| visited.mark(face)).collect();
+        let mut open: Vec<u32> = from.iter().copied().filter(|&face| visited.insert(face)).collect();
         let (mut places, mut normals) = (Vec::new(), Vec::new());
         while let Some(face) = open.pop() {
             let before = places.len();
@@ -174,7 +150,7 @@ impl Patches<'_> {
                 let chain = self.chain_of[side as usize];
                 if chain == NONE || chain == disc.over {
                     let halves = self.edges.halves(&self.edges.edges[side as usize]);
-                    open.extend(halves.iter().map(|half| half.face).filter(|&other| visited.mark(other)));
+                    open.extend(halves.iter().map(|half| half.face).filter(|&other| visited.insert(other)));
                 }
             }
         }

@@ -138,9 +138,9 @@ impl Covering<'_> {
             .collect();
         reached.sort_unstable();
         reached.dedup();
-        region.unmark();
+        region.marks.clear();
         for &point in &points {
-            region.mark(point);
+            region.marks.insert(point);
         }
         let mut pieces = Vec::new();
         for piece in reached {
@@ -151,7 +151,7 @@ impl Covering<'_> {
                 return None;
             }
             let near = farthest <= ROUNDED_SLACK * self.grower.budget.fit;
-            if near && corners.iter().all(|&corner| region.marked(corner)) {
+            if near && corners.iter().all(|&corner| region.marks.contains(corner)) {
                 pieces.push(piece);
             }
         }
