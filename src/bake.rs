@@ -1,13 +1,15 @@
 //! The recipe: from a mesh or cloud to an asset, one stage a line.
 
-use std::fmt;
-use std::str::FromStr;
+pub mod meant;
+pub mod noise;
+pub mod options;
+
+use std::borrow::Cow;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 
-use crate::analyse::cloud_normals::NormalSource;
 use crate::analyse::cloud_surface::cloud_surface;
 use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
 use crate::analyse::surface::Surface;
@@ -27,140 +29,8 @@ use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::grow::Grower;
-use crate::tolerance::{DEFAULT_EDGE_ANGLE, DEFAULT_MAX_ERROR};
-
-/// Where the feature lines come from.
-#[derive(Clone, Debug, Default)]
-pub enum Edges {
-    /// Found on a mesh by dihedral angle and border; none for a cloud.
-    #[default]
-    Auto,
-    /// No feature lines; a mesh's borders still end its surface.
-    None,
-    /// Given, in input coordinates.
-    Given(Polylines),
-}
-
-/// An error budget as the user states it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MaxError {
-    /// Fraction of the bounding box's diagonal.
-    Relative(f64),
-    /// In the input's units.
-    Absolute(f64),
-}
-
-impl Default for MaxError {
-    fn default() -> Self {
-        Self::Relative(DEFAULT_MAX_ERROR)
-    }
-}
-
-impl fmt::Display for MaxError {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            // Percents are read back as they were written: ten digits hide the scaling's rounding.
-            Self::Relative(share) => write!(out, "{}%", (share * 1e12).round() / 1e10),
-            Self::Absolute(units) => write!(out, "{units}"),
-        }
-    }
-}
-
-impl FromStr for MaxError {
-    type Err = String;
-
-    /// A percentage of the diagonal, `0.1%`, or a length in the input's units, `0.002`.
-    fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let (number, relative) = match text.strip_suffix('%') {
-            Some(number) => (number, true),
-            None => (text, false),
-        };
-        let value: f64 = number.trim().parse().map_err(|_| {
-            "give a percentage of the diagonal, such as 0.1%, or a length in the input's units, such as 0.002"
-                .to_owned()
-        })?;
-        let positive = value > 0.0 && value.is_finite();
-        match (positive, relative) {
-            (false, _) => Err("the greatest error must be positive and finite".into()),
-            (true, true) if value > 100.0 => Err("more than 100% of the diagonal bounds nothing".into()),
-            (true, true) => Ok(Self::Relative(value / 100.0)),
-            (true, false) => Ok(Self::Absolute(value)),
-        }
-    }
-}
-
-/// What to do with the input's normals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Normals {
-    /// Keep them where they are sound, else estimate.
-    #[default]
-    Auto,
-    /// Keep them; an input without sound normals is an error.
-    Keep,
-    /// Estimate them from the positions.
-    Estimate,
-}
-
-impl From<Normals> for NormalSource {
-    fn from(normals: Normals) -> Self {
-        match normals {
-            Normals::Auto => Self::Auto,
-            Normals::Keep => Self::Keep,
-            Normals::Estimate => Self::Estimate,
-        }
-    }
-}
-
-/// What to do with the input's colours.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Colors {
-    /// Keep them if the input has any that differ.
-    #[default]
-    Auto,
-    /// Keep them; an input without colours is an error.
-    Keep,
-    /// Leave them out.
-    Drop,
-}
-
-/// How to bake.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// The error bound.
-    pub max_error: MaxError,
-    /// Where the feature lines come from.
-    pub edges: Edges,
-    /// Dihedral angle, degrees, from which a mesh edge is a feature edge under [`Edges::Auto`].
-    pub edge_angle: f64,
-    /// 1 (fastest) to 9 (fewest bytes).
-    pub effort: u8,
-    /// What to do with normals.
-    pub normals: Normals,
-    /// What to do with colours.
-    pub colors: Colors,
-    /// What splats may be pieces of; less than all is for comparison, at the same guarantees.
-    pub shapes: Shapes,
-    /// What splats may be cut by; less than all is for comparison, at the same guarantees.
-    pub clips: Clips,
-}
-
-/// Between the fastest bake and the fewest bytes.
-pub const DEFAULT_EFFORT: u8 = 5;
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            max_error: MaxError::default(),
-            edges: Edges::default(),
-            edge_angle: DEFAULT_EDGE_ANGLE,
-            effort: DEFAULT_EFFORT,
-            normals: Normals::default(),
-            colors: Colors::default(),
-            shapes: Shapes::default(),
-            clips: Clips::default(),
-        }
-    }
-}
+pub use meant::{Made, Meant, meant};
+pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
@@ -196,6 +66,12 @@ pub struct Baked {
     pub asset: Asset,
     /// Time of each stage.
     pub stages: Vec<StageTime>,
+    /// Standard deviation of a cloud's points from their surface, model units, as [`Meant::noise`].
+    pub noise: Option<f64>,
+    /// What was made of the input before it was baked.
+    pub made: Made,
+    /// What that is, unless it is the input itself.
+    pub stand_in: Option<Input>,
     /// Feature edges found or matched.
     pub features: Found,
     /// How the splats were chosen.
@@ -228,7 +104,8 @@ pub fn bake(
     let diagonal = diagonal(&cloud.positions);
     let max_error = model_error(options, diagonal, cloud.frame.scale())?;
     clock.stage(progress, "analyse");
-    let Analysed { mut surface, features, left_out } = analyse(input, options, max_error, diagonal)?;
+    let meant = meant(input, options, max_error)?;
+    let Analysed { mut surface, features, left_out } = analyse(&meant, options, max_error, diagonal)?;
     let colors_left_out = choose_colors(&mut surface, options.colors)?;
     clock.stage(progress, "sample");
     let round = |splat: &Splat| rounding(splat, max_error);
@@ -254,7 +131,12 @@ pub fn bake(
         splats,
     };
     let samples = surface.points.len();
-    Ok(Baked { asset, stages: clock.finish(), features, choice, samples, left_out, colors_left_out })
+    let stand_in = match meant.input {
+        Cow::Owned(made) => Some(made),
+        Cow::Borrowed(_) => None,
+    };
+    let (noise, made, stages) = (meant.noise, meant.made, clock.finish());
+    Ok(Baked { asset, stages, noise, made, stand_in, features, choice, samples, left_out, colors_left_out })
 }
 
 /// Length of the bounding box's diagonal.
@@ -318,7 +200,12 @@ fn expected_radius(max_error: f64, diagonal: f64) -> f64 {
 fn making(max_error: f64, diagonal: f64) -> Making<'static> {
     let reach = expected_radius(max_error, diagonal);
     let worth = Worth { reach, max_error, misfit: &misfit };
-    Making { longest: PIECE_SHARE * reach, most: MOST_PIECES, worth }
+    Making { longest: piece_length(max_error, diagonal), most: MOST_PIECES, worth }
+}
+
+/// How long the sides of pieces may be.
+fn piece_length(max_error: f64, diagonal: f64) -> f64 {
+    PIECE_SHARE * expected_radius(max_error, diagonal)
 }
 
 /// A point of a cloud stands for others within this many error bounds: a fraction of the
@@ -341,15 +228,20 @@ struct Analysed {
 /// that they meet, are left out.
 const SHORTEST_LINE: f64 = 8.0;
 
-fn analyse(input: &Input, options: &Options, max_error: f64, diagonal: f64) -> Result<Analysed> {
-    match input {
+fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) -> Result<Analysed> {
+    match meant.input.as_ref() {
         Input::Mesh(mesh) => {
-            let features = features(mesh, &options.edges, options.edge_angle, max_error);
-            let (surface, features) = mesh_surface(mesh, &features, &making(max_error, diagonal));
-            Ok(Analysed { surface, features, ..Analysed::default() })
+            let features = features(mesh, &meant.edges, options.edge_angle, max_error);
+            let (surface, found) = mesh_surface(mesh, &features, &making(max_error, diagonal));
+            // Of a smooth surface's lines, the input's are those to tell of.
+            let matched = match meant.made {
+                Made::Smooth(before) => before.matched,
+                Made::Itself | Made::Quiet(_) => found.matched,
+            };
+            Ok(Analysed { surface, features: Found { matched, ..found }, ..Analysed::default() })
         }
         Input::Cloud(cloud) => {
-            let lines = match &options.edges {
+            let lines = match meant.edges.as_ref() {
                 Edges::Given(lines) => model_lines(lines, &cloud.frame),
                 Edges::Auto | Edges::None => Vec::new(),
             };

@@ -36,7 +36,7 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     let bytes = format::encode(&baked.asset)?;
     let mut asset = format::decode(&bytes, &format::Limits::default())?;
     clock.stage(progress, "measure");
-    measure(input, &baked.left_out, &mut asset)?;
+    measure(model(baked.stand_in.as_ref().unwrap_or(input)), &baked.left_out, &mut asset)?;
     clock.stage(progress, "encode");
     // Encoding what was decoded changes nothing but the measured error.
     let bytes = format::encode(&asset)?;
@@ -46,8 +46,8 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
 }
 
 /// Measures the fit of the decoded splats and holds it against the bound.
-fn measure(input: &Input, left_out: &[u32], asset: &mut Asset) -> Result<()> {
-    let points = points(model(input), left_out);
+fn measure(model: Model<'_>, left_out: &[u32], asset: &mut Asset) -> Result<()> {
+    let points = points(model, left_out);
     let found = fit(&points, asset, REACH * asset.max_error);
     if found.uncovered > 0 || found.accuracy.max > asset.max_error {
         return Err(Error::Internal(format!(

@@ -90,7 +90,8 @@ pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<V
     found.chain(given.iter().copied()).map(|segment| segment.to_vec()).collect()
 }
 
-fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
+/// Which edges of a mesh are feature edges, and what was found.
+pub(super) fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
     let edges = Edges::of(&welded.triangles);
     let (marked, matched) = match features {
         Features::Sharp { degrees, shortest } => {

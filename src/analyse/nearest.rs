@@ -56,6 +56,14 @@ impl Search {
             .collect()
     }
 
+    /// The `count` points nearest to a place, nearest first; all where there are fewer.
+    #[must_use]
+    pub fn around(&self, place: Vec3, count: usize) -> Vec<u32> {
+        let Some(count) = NonZeroUsize::new(count) else { return Vec::new() };
+        let found = self.tree.query(&place.to_array()).nearest_n::<SquaredEuclidean<f32>>(count).execute();
+        found.iter().map(|found| found.item).collect()
+    }
+
     /// The point nearest to a place; `None` only where there are no points.
     #[must_use]
     pub fn closest(&self, place: DVec3) -> Option<u32> {

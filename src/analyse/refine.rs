@@ -1,6 +1,9 @@
 //! Splits long edges, so that pieces are small beside the splats that will cover them.
 
-use super::edges::Edges;
+use glam::DVec3;
+
+use super::edges::{Edge, Edges};
+use super::surface::NONE;
 use super::weld::Welded;
 
 /// Rounds of halving after which refinement stops whatever the lengths.
@@ -17,33 +20,51 @@ pub fn refine(mut welded: Welded, mut marked: Vec<bool>, longest: f64, most: usi
     for _ in 0..ROUNDS {
         let edges = Edges::of(&welded.triangles);
         let middles = split_long(&mut welded, &edges, longest);
-        let split = middles.iter().filter(|&&m| m != u32::MAX).count();
+        let split = middles.iter().filter(|&&m| m != NONE).count();
         if split == 0 || welded.triangles.len() + 2 * split > most {
             break;
         }
-        let features = halved_features(&edges, &middles, &marked);
-        welded.triangles = split_triangles(&welded.triangles, &edges, &middles);
-        let refined = Edges::of(&welded.triangles);
-        marked = refined.edges.iter().map(|edge| features.binary_search(&edge.ends).is_ok()).collect();
+        marked = halve(&mut welded, &edges, &middles, &marked);
     }
     (welded, marked)
 }
 
-/// Appends the middles of long edges; for each edge its middle's index or `u32::MAX`.
-fn split_long(welded: &mut Welded, edges: &Edges, longest: f64) -> Vec<u32> {
-    let mut middles = vec![u32::MAX; edges.edges.len()];
-    for (middle, edge) in middles.iter_mut().zip(&edges.edges) {
-        let [a, b] = edge.ends.map(|v| welded.positions[v as usize]);
-        if f64::from(a.distance(b)) > longest {
-            *middle = welded.positions.len() as u32;
-            welded.positions.push((0.5 * (a.as_dvec3() + b.as_dvec3())).as_vec3());
-            if !welded.colors.is_empty() {
-                let [a, b] = edge.ends.map(|v| welded.colors[v as usize]);
-                welded.colors.push([0, 1, 2].map(|c| u8::midpoint(a[c], b[c])));
-            }
-        }
+/// Splits the triangles at the middles of their edges, given for each edge or [`NONE`]; which edges
+/// of the finer mesh are feature edges, given those of the mesh.
+pub(super) fn halve(welded: &mut Welded, edges: &Edges, middles: &[u32], marked: &[bool]) -> Vec<bool> {
+    let features = halved_features(edges, middles, marked);
+    let sides = of_halves(edges, middles, welded.triangles.len());
+    let sides: Vec<_> = sides.into_iter().map(|side| side.map(|m| (m != NONE).then_some(m))).collect();
+    welded.triangles = split_triangles(&welded.triangles, &sides);
+    let refined = Edges::of(&welded.triangles);
+    refined.edges.iter().map(|edge| features.binary_search(&edge.ends).is_ok()).collect()
+}
+
+/// Appends the middle of an edge's ends, moved by an offset; its index.
+pub(super) fn push_middle(welded: &mut Welded, ends: [u32; 2], offset: DVec3) -> u32 {
+    let [a, b] = ends.map(|v| welded.positions[v as usize].as_dvec3());
+    welded.positions.push((0.5 * (a + b) + offset).as_vec3());
+    if !welded.colors.is_empty() {
+        let [a, b] = ends.map(|v| welded.colors[v as usize]);
+        welded.colors.push([0, 1, 2].map(|c| u8::midpoint(a[c], b[c])));
     }
-    middles
+    welded.positions.len() as u32 - 1
+}
+
+/// Appends the middles of long edges; for each edge its middle's index or [`NONE`].
+fn split_long(welded: &mut Welded, edges: &Edges, longest: f64) -> Vec<u32> {
+    let long: Vec<bool> = edges.edges.iter().map(|edge| length(welded, edge) > longest).collect();
+    let middle = |(edge, long): (&Edge, bool)| match long {
+        true => push_middle(welded, edge.ends, DVec3::ZERO),
+        false => NONE,
+    };
+    edges.edges.iter().zip(long).map(middle).collect()
+}
+
+/// The length of an edge.
+pub(super) fn length(welded: &Welded, edge: &Edge) -> f64 {
+    let [a, b] = edge.ends.map(|v| welded.positions[v as usize]);
+    f64::from(a.distance(b))
 }
 
 /// The feature edges of the refined mesh, sorted.
@@ -51,7 +72,7 @@ fn halved_features(edges: &Edges, middles: &[u32], marked: &[bool]) -> Vec<[u32;
     let mut features = Vec::new();
     for ((edge, &middle), _) in edges.edges.iter().zip(middles).zip(marked).filter(|(_, mark)| **mark) {
         let [a, b] = edge.ends;
-        if middle == u32::MAX {
+        if middle == NONE {
             features.push([a, b]);
         } else {
             // A middle's index is greater than every old vertex.
@@ -62,37 +83,35 @@ fn halved_features(edges: &Edges, middles: &[u32], marked: &[bool]) -> Vec<[u32;
     features
 }
 
-fn split_triangles(triangles: &[[u32; 3]], edges: &Edges, middles: &[u32]) -> Vec<[u32; 3]> {
-    let mut sides = vec![[u32::MAX; 3]; triangles.len()];
-    for (edge, &middle) in edges.edges.iter().zip(middles) {
+/// What is given for each edge, for each side of each triangle.
+pub(super) fn of_halves(edges: &Edges, given: &[u32], triangles: usize) -> Vec<[u32; 3]> {
+    let mut sides = vec![[NONE; 3]; triangles];
+    for (edge, &value) in edges.edges.iter().zip(given) {
         for half in edges.halves(edge) {
-            sides[half.face as usize][half.corner as usize] = middle;
+            sides[half.face as usize][half.corner as usize] = value;
         }
     }
+    sides
+}
+
+/// Splits triangles by what lies in the middle of their sides, if anything (`side[n]` follows
+/// `corners[n]`).
+pub(super) fn split_triangles<T: Copy>(triangles: &[[T; 3]], sides: &[[Option<T>; 3]]) -> Vec<[T; 3]> {
     let mut out = Vec::with_capacity(triangles.len() * 2);
-    for (&corners, &side) in triangles.iter().zip(&sides) {
+    for (&corners, &side) in triangles.iter().zip(sides) {
         push_split(corners, side, &mut out);
     }
     out
 }
 
-/// Splits one triangle by the middles of its sides (`side[n]` follows `corners[n]`).
-fn push_split(corners: [u32; 3], side: [u32; 3], out: &mut Vec<[u32; 3]>) {
-    let split = side.map(|m| m != u32::MAX);
-    // Turned so that one split side, or the one side that is not, comes first.
-    let turn = match split {
-        [false, false, false] => return out.push(corners),
-        [_, false, false] | [false, true, true] | [true, true, true] => 0,
-        [false, _, false] | [true, false, true] => 1,
-        [false, false, _] | [true, true, false] => 2,
-    };
-    let at = |n: usize| (n + turn) % 3;
-    let [a, b, c] = [corners[at(0)], corners[at(1)], corners[at(2)]];
-    let [ab, bc, ca] = [side[at(0)], side[at(1)], side[at(2)]];
-    match split.iter().filter(|s| **s).count() {
-        1 => out.extend([[a, ab, c], [ab, b, c]]),
-        2 => out.extend([[a, b, bc], [a, bc, ca], [ca, bc, c]]),
-        _ => out.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]),
+fn push_split<T: Copy>([a, b, c]: [T; 3], side: [Option<T>; 3], out: &mut Vec<[T; 3]>) {
+    // Turned so that the one side that is split comes first, or the one that is not.
+    match side {
+        [None, None, None] => out.push([a, b, c]),
+        [Some(ab), None, None] => out.extend([[a, ab, c], [ab, b, c]]),
+        [None, Some(bc), Some(ca)] => out.extend([[a, b, bc], [a, bc, ca], [ca, bc, c]]),
+        [Some(ab), Some(bc), Some(ca)] => out.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]),
+        [ab, bc, ca] => push_split([b, c, a], [bc, ca, ab], out),
     }
 }
 

@@ -20,6 +20,13 @@ pub struct Welded {
 /// Welds a mesh; degenerate and repeated triangles and unused vertices disappear.
 #[must_use]
 pub fn weld(mesh: &Mesh) -> Welded {
+    weld_shaded(mesh).0
+}
+
+/// As [`weld`], and for each triangle the normals that the file gives its corners: as it gives them,
+/// perhaps not unit, perhaps zero. Empty where it gives none.
+#[must_use]
+pub fn weld_shaded(mesh: &Mesh) -> (Welded, Vec<[Vec3; 3]>) {
     let cloud = &mesh.vertices;
     let mut order: Vec<u32> = (0..cloud.positions.len() as u32).collect();
     order.par_sort_unstable_by_key(|&v| canonical::key(cloud.positions[v as usize]));
@@ -44,9 +51,14 @@ pub fn weld(mesh: &Mesh) -> Welded {
     if !cloud.colors.is_empty() {
         welded.colors = sums.iter().map(mean).collect();
     }
-    welded.triangles = canonical_triangles(mesh, &place);
+    let corners = canonical_triangles(mesh, &place);
+    welded.triangles = corners.iter().map(|&(places, _)| places).collect();
     drop_unused(&mut welded);
-    welded
+    let normals = match cloud.normals.is_empty() {
+        true => Vec::new(),
+        false => corners.iter().map(|(_, corners)| corners.map(|v| cloud.normals[v as usize])).collect(),
+    };
+    (welded, normals)
 }
 
 fn mean(sum: &[u32; 4]) -> [u8; 3] {
@@ -54,25 +66,27 @@ fn mean(sum: &[u32; 4]) -> [u8; 3] {
     [0, 1, 2].map(|channel| ((sum[channel] + count / 2) / count) as u8)
 }
 
-fn canonical_triangles(mesh: &Mesh, place: &[u32]) -> Vec<[u32; 3]> {
-    let mut triangles: Vec<[u32; 3]> = mesh
+/// The triangles in canonical order, as places and as vertices of the file: of those that become
+/// one, the one whose normals come first.
+fn canonical_triangles(mesh: &Mesh, place: &[u32]) -> Vec<([u32; 3], [u32; 3])> {
+    let mut triangles: Vec<([u32; 3], [u32; 3])> = mesh
         .triangles
         .iter()
-        .map(|corners| corners.map(|v| place[v as usize]))
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .map(|[a, b, c]| {
-            // Turned so that the least index comes first; the orientation stays.
-            if a < b && a < c {
-                [a, b, c]
-            } else if b < c {
-                [b, c, a]
-            } else {
-                [c, a, b]
-            }
+        .map(|corners| (corners.map(|v| place[v as usize]), *corners))
+        .filter(|([a, b, c], _)| a != b && b != c && c != a)
+        .map(|(places, corners)| {
+            // Turned so that the least place comes first; the orientation stays.
+            let [a, b, c] = places;
+            let turn = if a < b && a < c { 0 } else { 1 + usize::from(c < b) };
+            let turned = |of: [u32; 3]| [0, 1, 2].map(|n| of[(n + turn) % 3]);
+            (turned(places), turned(corners))
         })
         .collect();
-    triangles.par_sort_unstable();
-    triangles.dedup();
+    let normal = |v: u32| mesh.vertices.normals.get(v as usize).map(|n| n.to_array().map(f32::to_bits));
+    triangles.par_sort_unstable_by(|one, other| {
+        one.0.cmp(&other.0).then_with(|| one.1.map(normal).cmp(&other.1.map(normal)))
+    });
+    triangles.dedup_by_key(|triangle| triangle.0);
     triangles
 }
 

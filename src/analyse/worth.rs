@@ -29,10 +29,11 @@ pub struct Worth<'a> {
 
 /// Depths of the patches looked at on either side, as shares of the reach, the deepest first: the
 /// first that a splat fits decides.
-const DEPTHS: [f64; 3] = [1.0, 0.5, 0.25];
+const DEPTHS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
 /// A patch over the crease, as wide as those beside it are deep, has this share of their depth for
-/// its radius: on a smooth surface all three fit about as well.
+/// its radius: on a smooth surface all three fit about as well. It goes over all other creases too:
+/// the teeth of a rack, each alone between its neighbours, would pass for smooth.
 const OVER: f64 = 0.5;
 
 /// A crease matters where a splat over it misses by more than this share of the bound.
@@ -54,16 +55,12 @@ const LOOKED_AT: usize = 12;
 /// Unmarks the chains of feature edges that are not worth a cut.
 pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
     let chains = chains(welded.positions.len(), edges, marked);
-    let mut chain_of = vec![NONE; edges.edges.len()];
-    for (number, chain) in (0_u32..).zip(&chains) {
-        chain.edges.iter().for_each(|&edge| chain_of[edge as usize] = number);
-    }
     let patches = Patches {
         welded,
         edges,
         sides: sides(edges, welded.triangles.len()),
         normals: face_normals(&welded.positions, &welded.triangles),
-        chain_of,
+        marked,
     };
     let needless: Vec<bool> = chains
         .par_iter()
@@ -98,8 +95,8 @@ struct Patches<'a> {
     edges: &'a Edges,
     sides: Vec<[u32; 3]>,
     normals: Vec<DVec3>,
-    /// For each edge, the chain it is part of, or [`NONE`].
-    chain_of: Vec<u32>,
+    /// Which edges are feature edges so far.
+    marked: &'a [bool],
 }
 
 /// What a patch is cut out for: where its middle is and how far it goes.
@@ -107,8 +104,8 @@ struct Patches<'a> {
 struct Disc {
     middle: DVec3,
     radius: f64,
-    /// The chain that it goes over, or [`NONE`].
-    over: u32,
+    /// Whether it goes over feature edges.
+    over: bool,
 }
 
 impl Patches<'_> {
@@ -118,15 +115,15 @@ impl Patches<'_> {
         let Some((left, right)) = self.edges.pair(edge) else { return true };
         let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());
         let middle = 0.5 * (a + b);
-        let mut misfit = |radius: f64, over: u32, faces: &[u32]| {
+        let mut misfit = |radius: f64, over: bool, faces: &[u32]| {
             let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
             patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
         };
         DEPTHS.iter().map(|share| share * worth.reach).find_map(|depth| {
-            let beside = [left.face, right.face].map(|face| misfit(depth, NONE, &[face]));
+            let beside = [left.face, right.face].map(|face| misfit(depth, false, &[face]));
             let beside = beside[0].max(beside[1]);
             (beside <= worth.max_error).then(|| {
-                let over = misfit(OVER * depth, self.chain_of[index as usize], &[left.face, right.face]);
+                let over = misfit(OVER * depth, true, &[left.face, right.face]);
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
         }) == Some(true)
@@ -147,8 +144,7 @@ impl Patches<'_> {
             }
             normals.push(self.normals[face as usize]);
             for side in self.sides[face as usize] {
-                let chain = self.chain_of[side as usize];
-                if chain == NONE || chain == disc.over {
+                if disc.over || !self.marked[side as usize] {
                     let halves = self.edges.halves(&self.edges.edges[side as usize]);
                     open.extend(halves.iter().map(|half| half.face).filter(|&other| visited.insert(other)));
                 }
@@ -192,36 +188,61 @@ mod tests {
         Welded { positions: rows.collect(), triangles: triangles.collect(), ..Welded::default() }
     }
 
-    /// Edges kept of those along a prism at one place of its profile, and how many there are.
-    fn kept(profile: &[(f32, f32)], crease: u32) -> (usize, usize) {
+    /// Edges kept of those along a prism at some places of its profile, and how many there are.
+    fn kept(profile: &[(f32, f32)], creases: &[u32], misfit: &Misfit<'_>) -> (usize, usize) {
         let welded = prism(profile);
         let edges = Edges::of(&welded.triangles);
         let across = profile.len() as u32;
-        let along = |v: u32| v % across == crease;
-        let mut marked: Vec<bool> = edges.edges.iter().map(|edge| edge.ends.into_iter().all(along)).collect();
+        let crease = |[a, b]: [u32; 2]| a % across == b % across && creases.contains(&(a % across));
+        let mut marked: Vec<bool> = edges.edges.iter().map(|edge| crease(edge.ends)).collect();
         let all = marked.iter().filter(|mark| **mark).count();
-        // A splat that is a plane through the mean.
-        let misfit = |places: &[DVec3], normal: DVec3| {
-            let mean = places.iter().sum::<DVec3>() / places.len() as f64;
-            places.iter().map(|place| (*place - mean).dot(normal).abs()).fold(0.0, f64::max)
-        };
-        let worth = Worth { reach: 6.0, max_error: 0.2, misfit: &misfit };
+        let worth = Worth { reach: 6.0, max_error: 0.2, misfit };
         drop_needless(&welded, &edges, &worth, &mut marked);
         (marked.iter().filter(|mark| **mark).count(), all)
+    }
+
+    /// How well a plane through the mean fits.
+    fn plane(places: &[DVec3], normal: DVec3) -> f64 {
+        let mean = places.iter().sum::<DVec3>() / places.len() as f64;
+        places.iter().map(|place| (*place - mean).dot(normal).abs()).fold(0.0, f64::max)
+    }
+
+    /// How well a parabola across a prism fits, upright.
+    fn parabola(places: &[DVec3], _: DVec3) -> f64 {
+        let mean = places.iter().sum::<DVec3>() / places.len() as f64;
+        let terms = |place: &DVec3| DVec3::new(1.0, place.x - mean.x, (place.x - mean.x).powi(2));
+        let (mut normal, mut right) = (glam::DMat3::ZERO, DVec3::ZERO);
+        for place in places {
+            let row = terms(place);
+            normal += glam::DMat3::from_cols(row.x * row, row.y * row, row.z * row);
+            right += place.y * row;
+        }
+        let solved = normal.inverse() * right;
+        places.iter().map(|place| (place.y - terms(place).dot(solved)).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_teeth_of_a_rack_are_worth_their_cuts() {
+        // A parabola fits any two flanks, and none fits three.
+        let rack: Vec<(f32, f32)> =
+            (-20..=20_i8).map(|n| (0.5 * f32::from(n), 0.5 * f32::from(n.rem_euclid(2)))).collect();
+        let creases: Vec<u32> = (1..40).collect();
+        let all = 39 * LENGTH as usize;
+        assert_eq!(kept(&rack, &creases, &parabola), (all, all));
     }
 
     #[test]
     fn the_edge_of_two_planes_is_worth_a_cut() {
         let roof: Vec<(f32, f32)> =
             (-10..=10_i8).map(|n| (f32::from(n), -0.5 * f32::from(n).abs())).collect();
-        assert_eq!(kept(&roof, 10), (LENGTH as usize, LENGTH as usize));
+        assert_eq!(kept(&roof, &[10], &plane), (LENGTH as usize, LENGTH as usize));
     }
 
     #[test]
     fn a_ridge_lower_than_the_bound_is_not() {
         let ridge: Vec<(f32, f32)> =
             (-50..=50_i8).map(|n| (0.2 * f32::from(n), if n == 0 { 0.15 } else { 0.0 })).collect();
-        assert_eq!(kept(&ridge, 50), (0, LENGTH as usize));
+        assert_eq!(kept(&ridge, &[50], &plane), (0, LENGTH as usize));
     }
 
     #[test]
@@ -231,6 +252,6 @@ mod tests {
             .map(|n| std::f32::consts::PI * f32::from(n) / 8.0)
             .map(|angle| (-2.0 * angle.cos(), 2.0 * angle.sin()))
             .collect();
-        assert_eq!(kept(&rod, 4), (0, LENGTH as usize));
+        assert_eq!(kept(&rod, &[4], &plane), (0, LENGTH as usize));
     }
 }

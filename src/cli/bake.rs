@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use qsplat::bake::{Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, MaxError, Normals, Options, Shapes};
+use qsplat::bake::meant::Quiet;
+use qsplat::bake::{
+    Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, Made, MaxError, Meaning, Normals, Options, Shapes,
+};
 use qsplat::error::{Error, Result};
 use qsplat::ingest::Input;
 use qsplat::report::{self, Report};
@@ -26,6 +29,13 @@ pub(super) struct Arguments {
     /// Dihedral angle from which `--edges auto` takes a mesh edge for a feature edge, degrees
     #[arg(long, value_name = "DEG", default_value_t = DEFAULT_EDGE_ANGLE, value_parser = edge_angle)]
     edge_angle: f64,
+    /// What the facets of a mesh stand for, and so what the error bound holds against
+    #[arg(long, value_enum, default_value_t)]
+    surface: SurfaceArgument,
+    /// Smooths the points of a cloud where they scatter too much for the error bound, which then
+    /// holds against the smoothed points; without it such a cloud is refused
+    #[arg(long)]
+    denoise: bool,
     /// The file to write
     #[arg(short, long, value_name = "OUT.qsplat")]
     output: PathBuf,
@@ -54,6 +64,27 @@ pub(super) struct Arguments {
     /// How to tell the progress, on standard error
     #[arg(long, value_enum, default_value_t)]
     progress: Style,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub(super) enum SurfaceArgument {
+    /// Themselves
+    #[default]
+    Facets,
+    /// A smooth surface through the vertices, at right angles to their normals
+    Smooth,
+    /// A smooth surface where normals, or without them the angles between facets, say so
+    Auto,
+}
+
+impl From<SurfaceArgument> for Meaning {
+    fn from(argument: SurfaceArgument) -> Self {
+        match argument {
+            SurfaceArgument::Facets => Self::Facets,
+            SurfaceArgument::Smooth => Self::Smooth,
+            SurfaceArgument::Auto => Self::Auto,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
@@ -147,6 +178,8 @@ impl Arguments {
             max_error: self.max_error,
             edges: source::edges(&self.edges)?,
             edge_angle: self.edge_angle,
+            meaning: self.surface.into(),
+            denoise: self.denoise,
             effort: self.effort,
             normals: match self.normals {
                 NormalsArgument::Auto => Normals::Auto,
@@ -180,6 +213,7 @@ impl Arguments {
             Edges::Auto | Edges::None => None,
         };
         let matched = baked.features.matched.filter(|matched| matched.length > 0.0);
+        let share = |length: f64| length / baked.asset.diagonal;
         report::Input {
             path: self.input.display().to_string(),
             kind: kind.into(),
@@ -187,6 +221,14 @@ impl Arguments {
             triangles: triangles as u64,
             dropped_points: cloud.dropped as u64,
             dropped_triangles: dropped_triangles as u64,
+            smooth: matches!(baked.made, Made::Smooth(_)),
+            noise: baked.noise.map(share),
+            moved: match baked.made {
+                Made::Quiet(Quiet { moved_rms, moved_max }) => {
+                    Some(report::Moved { rms: share(moved_rms), max: share(moved_max) })
+                }
+                Made::Itself | Made::Smooth(_) => None,
+            },
             normals: !cloud.normals.is_empty(),
             colors: !cloud.colors.is_empty(),
             colors_left_out: baked.colors_left_out.map(Into::into),
@@ -210,6 +252,8 @@ impl Arguments {
             max_error_unit: unit.into(),
             edges: self.edges.clone(),
             edge_angle: self.edge_angle,
+            surface: name(self.surface.to_possible_value()),
+            denoise: self.denoise,
             effort: self.effort,
             normals: name(self.normals.to_possible_value()),
             color: name(self.color.to_possible_value()),

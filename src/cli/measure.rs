@@ -3,12 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use glam::DVec3;
-use qsplat::bake::feature_lines;
+use qsplat::bake::{Options, feature_lines, meant};
 use qsplat::deliver::model;
 use qsplat::error::{Error, Result};
 use qsplat::format;
-use qsplat::ingest::Input;
 use qsplat::measure::measures::GpuFrame;
 use qsplat::measure::{self, Measures, Reference, Subject, align, cost};
 use qsplat::model::asset::Asset;
@@ -38,6 +36,13 @@ pub(super) struct Arguments {
     /// Dihedral angle from which `--edges auto` takes a mesh edge for a feature edge, degrees
     #[arg(long, value_name = "DEG", default_value_t = DEFAULT_EDGE_ANGLE, value_parser = bake::edge_angle)]
     edge_angle: f64,
+    /// What the facets of a mesh stand for, as in `bake`
+    #[arg(long, value_enum, default_value_t)]
+    surface: bake::SurfaceArgument,
+    /// Measures against the points of a cloud smoothed as `bake --denoise` does, where their noise
+    /// asks for it
+    #[arg(long)]
+    denoise: bool,
     /// JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -63,13 +68,18 @@ impl Arguments {
         let bytes = format::read_bytes(&self.file, &format::Limits::default())?;
         let asset = source::asset(&self.file)?;
         let input = source::input(&self.against)?;
-        let aligned = align::align(model(&input), &asset)?;
+        let frame = input.cloud().frame;
+        align::check(&frame, model(&input).diagonal(), &asset)?;
         let mut progress = self.progress.teller(notes.quiet, notes.out);
         progress.stage("lines");
-        let lines = self.lines(&asset, &input)?;
-        let lines = lines.as_ref().map(|lines| align::lines(lines, &input.cloud().frame, &asset.frame));
+        let max_error = asset.max_error * asset.frame.scale() / frame.scale();
+        let options = self.options()?;
+        let meant = meant(&input, &options, max_error)?;
+        let lines = feature_lines(&meant.input, &meant.edges, self.edge_angle, max_error);
+        let lines = lines.as_ref().map(|lines| align::lines(lines, &frame, &asset.frame));
         progress.stage("reference");
-        let reference = Reference::new(aligned.model())?;
+        let aligned = align::bring(model(&meant.input), &asset);
+        let reference = Reference::standing_for(aligned.model(), asset.diagonal)?;
         let subject = Subject { bytes: &bytes, asset: &asset, against: &reference, lines: lines.as_deref() };
         let mut measures = measure::measure_telling(&subject, &mut |stage| progress.stage(stage))?;
         drop(progress);
@@ -82,10 +92,15 @@ impl Arguments {
         self.outcome(&measures, notes)
     }
 
-    /// The lines that a bake of the input would cut along, in the input's model units.
-    fn lines(&self, asset: &Asset, input: &Input) -> Result<Option<Vec<Vec<DVec3>>>> {
-        let max_error = asset.max_error * asset.frame.scale() / input.cloud().frame.scale();
-        Ok(feature_lines(input, &source::edges(&self.edges)?, self.edge_angle, max_error))
+    /// The options that say what a bake of the input means.
+    fn options(&self) -> Result<Options> {
+        Ok(Options {
+            edges: source::edges(&self.edges)?,
+            edge_angle: self.edge_angle,
+            meaning: self.surface.into(),
+            denoise: self.denoise,
+            ..Options::default()
+        })
     }
 
     /// The time of a frame on a graphics device, if one is asked for.

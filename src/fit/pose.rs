@@ -152,11 +152,17 @@ pub fn principal(
     Principal { pose, curvature, rank: height.rank }
 }
 
+/// How far along `k` a place in splat coordinates lies above the quadric.
+#[must_use]
+pub fn above(curvature: DVec2, local: DVec3) -> f64 {
+    let uv = local.truncate();
+    local.z - (curvature * uv * uv).element_sum()
+}
+
 /// Distance along `k` of a place in splat coordinates from the quadric.
 #[must_use]
 pub fn miss(curvature: DVec2, local: DVec3) -> f64 {
-    let uv = local.truncate();
-    (local.z - (curvature * uv * uv).element_sum()).abs()
+    above(curvature, local).abs()
 }
 
 /// How far the farthest of some points lies, along `k`, from the quadric fitted to them; `normal`

@@ -37,22 +37,37 @@ impl Aligned<'_> {
 /// Brings an input to an asset's model units; a copy is made only if the frames differ.
 ///
 /// # Errors
+/// As [`check`].
+pub fn align<'a>(against: Model<'a>, asset: &Asset) -> Result<Aligned<'a>> {
+    check(&against.cloud().frame, against.diagonal(), asset)?;
+    Ok(bring(against, asset))
+}
+
+/// Whether an input belongs to an asset, by its frame and the diagonal of its box in that frame.
+///
+/// # Errors
 /// [`Error::Usage`] if the bounding boxes differ by more than rounding: the file was baked from
 /// something else.
-pub fn align<'a>(against: Model<'a>, asset: &Asset) -> Result<Aligned<'a>> {
-    let frame = against.cloud().frame;
-    let diagonals = [asset.diagonal * asset.frame.scale(), against.diagonal() * frame.scale()];
+pub fn check(frame: &Frame, diagonal: f64, asset: &Asset) -> Result<()> {
+    let diagonals = [asset.diagonal * asset.frame.scale(), diagonal * frame.scale()];
     let apart = frame.origin.distance(asset.frame.origin);
     // Written so that a NaN is refused.
     let same = [apart, (diagonals[0] - diagonals[1]).abs()].iter().all(|&off| off <= SAME_BOX * diagonals[0]);
-    if !same {
-        return Err(Error::Usage(format!(
-            "the file and the input do not belong together: the file's bounding box has its centre at {} and \
-             a diagonal of {}, the input's {} and {}; give the input that the file was baked from",
-            asset.frame.origin, diagonals[0], frame.origin, diagonals[1]
-        )));
+    if same {
+        return Ok(());
     }
-    Ok(match against {
+    Err(Error::Usage(format!(
+        "the file and the input do not belong together: the file's bounding box has its centre at {} and \
+         a diagonal of {}, the input's {} and {}; give the input that the file was baked from",
+        asset.frame.origin, diagonals[0], frame.origin, diagonals[1]
+    )))
+}
+
+/// Brings a model to an asset's model units, whether it belongs to it or not.
+#[must_use]
+pub fn bring<'a>(against: Model<'a>, asset: &Asset) -> Aligned<'a> {
+    let frame = against.cloud().frame;
+    match against {
         Model::Mesh(mesh) if frame == asset.frame => Aligned::Mesh(Cow::Borrowed(mesh)),
         Model::Cloud(cloud) if frame == asset.frame => Aligned::Cloud(Cow::Borrowed(cloud)),
         Model::Mesh(mesh) => {
@@ -60,7 +75,7 @@ pub fn align<'a>(against: Model<'a>, asset: &Asset) -> Result<Aligned<'a>> {
             Aligned::Mesh(Cow::Owned(Mesh { vertices, ..mesh.clone() }))
         }
         Model::Cloud(cloud) => Aligned::Cloud(Cow::Owned(moved(cloud, asset.frame))),
-    })
+    }
 }
 
 /// Feature lines in the model units of `from`, in those of `to`.

@@ -51,7 +51,7 @@ pub struct Subject<'a> {
     /// The file as decoded.
     pub asset: &'a Asset,
     /// The input it was baked from. One that lies in another frame is sampled and drawn again in
-    /// the asset's; [`align::align`] brings it there beforehand.
+    /// the asset's; [`align::bring`] brings it there beforehand.
     pub against: &'a Reference<'a>,
     /// The feature lines, in the reference's model units; `None` leaves `edge` out.
     pub lines: Option<&'a [Vec<DVec3>]>,
@@ -71,14 +71,16 @@ pub fn measure(subject: &Subject<'_>) -> Result<Measures> {
 /// As [`measure`].
 pub fn measure_telling(subject: &Subject<'_>, tell: &mut dyn FnMut(&'static str)) -> Result<Measures> {
     let model = subject.against.model;
-    let aligned = align::align(model, subject.asset)?;
     let frames = [&model.cloud().frame, &subject.asset.frame];
+    align::check(frames[0], subject.against.diagonal, subject.asset)?;
     if frames[0] == frames[1] {
         return against(subject.against, subject, subject.lines, tell);
     }
     tell("reference");
     let lines = subject.lines.map(|lines| align::lines(lines, frames[0], frames[1]));
-    against(&Reference::new(aligned.model())?, subject, lines.as_deref(), tell)
+    let aligned = align::bring(model, subject.asset);
+    let reference = Reference::standing_for(aligned.model(), subject.asset.diagonal)?;
+    against(&reference, subject, lines.as_deref(), tell)
 }
 
 /// Measures against a reference in the asset's frame, with lines in that frame.

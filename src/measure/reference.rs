@@ -14,8 +14,10 @@ use crate::render::input::{Model, Prepared, Style};
 ///
 /// Beside the input itself it takes about a hundred megabytes, most of them for the pictures.
 pub struct Reference<'a> {
-    /// The input.
+    /// The input, or the surface that it stands for.
     pub model: Model<'a>,
+    /// Of the input's bounding box, in the model's units: by it a file is known to belong to it.
+    pub diagonal: f64,
     /// The points of [`fit::points`].
     pub points: Vec<Vec3>,
     /// Its surface.
@@ -30,11 +32,20 @@ impl<'a> Reference<'a> {
     /// # Errors
     /// [`crate::Error::Usage`] for a mesh without any area.
     pub fn new(model: Model<'a>) -> Result<Self> {
+        Self::standing_for(model, model.diagonal())
+    }
+
+    /// As [`Self::new`], of a surface that stands for an input with a bounding box of this diagonal,
+    /// in the surface's units.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn standing_for(model: Model<'a>, diagonal: f64) -> Result<Self> {
         let surface = InputSurface::new(model)?;
         let input = Prepared::new(model, &Style::default());
         let views = views::views(model);
         let drawn = views.into_par_iter().map(|view| Drawn::new(&input, view)).collect::<Result<_>>()?;
-        Ok(Self { model, points: fit::points(model, &[]), surface, drawn })
+        Ok(Self { model, diagonal, points: fit::points(model, &[]), surface, drawn })
     }
 
     /// The views.

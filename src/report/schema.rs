@@ -24,6 +24,14 @@ pub struct Input {
     pub dropped_points: u64,
     /// Triangles left out because they are degenerate or used a dropped point.
     pub dropped_triangles: u64,
+    /// Whether a mesh's facets were taken for a smooth surface: the errors are then those against it.
+    pub smooth: bool,
+    /// Standard deviation of a cloud's points from their surface, a fraction of the diagonal; `None`
+    /// for a mesh and where the points show no surface.
+    pub noise: Option<f64>,
+    /// How far a cloud's points were moved to smooth them; `None` if they were not: the errors are
+    /// then those of the smoothed points.
+    pub moved: Option<Moved>,
     /// Whether the input has normals.
     pub normals: bool,
     /// Whether the input has colours.
@@ -38,6 +46,15 @@ pub struct Input {
     pub lines_matched: Option<f64>,
 }
 
+/// How far points were moved, fractions of the diagonal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moved {
+    /// Root mean square.
+    pub rms: f64,
+    /// The farthest.
+    pub max: f64,
+}
+
 /// How it was baked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
@@ -49,6 +66,10 @@ pub struct Options {
     pub edges: String,
     /// Dihedral angle in degrees from which a mesh edge is a feature edge.
     pub edge_angle: f64,
+    /// `facets`, `smooth` or `auto`: what a mesh's facets stand for.
+    pub surface: String,
+    /// Whether a cloud is smoothed where its points scatter too much for the bound.
+    pub denoise: bool,
     /// 1 to 9.
     pub effort: u8,
     /// `auto`, `keep` or `estimate`.

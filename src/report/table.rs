@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Choice, File, Report, Run};
+use super::{Choice, File, Moved, Report, Run};
 
 impl Report {
     /// Lines of plain text, ending in a line break.
@@ -32,6 +32,16 @@ impl Report {
             let triangles =
                 if input.triangles > 0 { format!(", {} triangles", input.triangles) } else { String::new() };
             text.row("input", format!("{} ({}, {} points{triangles})", input.path, input.kind, input.points));
+            if input.smooth {
+                text.row("surface", "smooth, through the vertices: errors are those against it");
+            }
+            if let Some(noise) = input.noise {
+                text.row("noise", format!("{noise:.2e} of the diagonal (standard deviation)"));
+            }
+            if let Some(moved) = &input.moved {
+                let Moved { rms, max } = moved;
+                text.row("smoothed", format!("points moved by rms {rms:.2e}, max {max:.2e} of the diagonal"));
+            }
         }
         let per_point = self.density.bytes_per_point.map_or(String::new(), |n| format!(", {n:.2} a point"));
         text.row("bytes", format!("{} ({:.1} a splat{per_point})", file.bytes, self.density.bytes_per_splat));

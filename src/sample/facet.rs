@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::fit::ellipse::crossings;
+use crate::fit::pose::above;
 
 /// The largest distance, along `k`, between a quadric and the part of a facet that its edges
 /// and inside show within an ellipse; 0 where none of it lies there.
@@ -22,11 +23,6 @@ pub fn farthest(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2) -> f64 {
 /// `q`, the height of the quadric over a place.
 fn form(curvature: DVec2, uv: DVec2) -> f64 {
     (curvature * uv * uv).element_sum()
-}
-
-/// Signed distance of a place from the quadric.
-fn above(curvature: DVec2, place: DVec3) -> f64 {
-    place.z - form(curvature, place.truncate())
 }
 
 /// The largest distance on an edge, as far as it lies in the ellipse.

@@ -5,5 +5,6 @@
 mod extremes;
 mod invariance;
 mod lines;
+mod noise;
 mod scene;
 mod shapes;

@@ -1,0 +1,140 @@
+//! What is baked: the input, or what it stands for.
+//!
+//! A mesh may stand for a smooth surface, a noisy cloud for a smoother one.
+
+use std::borrow::Cow;
+
+use super::noise::{Quieted, least_bound, noise, quieted};
+use super::options::{Edges, Meaning, Options};
+use super::{MOST_PIECES, diagonal, features, piece_length};
+use crate::analyse::mesh_surface::Found;
+use crate::analyse::smooth::Fineness;
+use crate::analyse::smoothed::{Smoothed, Smoothing, smoothed};
+use crate::error::{Error, Result};
+use crate::ingest::Input;
+use crate::model::cloud::Cloud;
+use crate::model::mesh::Mesh;
+use crate::model::polyline::Polylines;
+
+/// Facets of a smooth surface lie within this share of the error bound of it.
+const SMOOTH_SHARE: f64 = 0.05;
+
+/// A smooth surface that lies nearer to the facets than this share of the error bound everywhere
+/// is not worth asking which is meant.
+const NOTICEABLE: f64 = 0.25;
+
+/// An error bound of less than this many standard deviations of a cloud's noise is refused: more
+/// than one point in twenty strays farther, so that no splat could hold many.
+const LEAST_BOUND: f64 = 2.0;
+
+/// What a least bound is told larger by, so that its four digits are enough.
+const ROUNDED: f64 = 1e-3;
+
+/// What is baked in the place of an input.
+#[derive(Clone, Debug)]
+pub struct Meant<'a> {
+    /// The input, or what it stands for, in the same frame: a smooth surface may bulge a little
+    /// beyond its box.
+    pub input: Cow<'a, Input>,
+    /// The feature lines of that.
+    pub edges: Cow<'a, Edges>,
+    /// Standard deviation of a cloud's points from their surface, model units; `None` for a mesh, and
+    /// for a cloud that shows no surface.
+    pub noise: Option<f64>,
+    /// What was done.
+    pub made: Made,
+}
+
+/// What was made of an input.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Made {
+    /// Nothing: it stands for itself.
+    #[default]
+    Itself,
+    /// A smooth surface of a mesh's facets; what became of the mesh's feature edges.
+    Smooth(Found),
+    /// A cloud without its noise.
+    Quiet(Quiet),
+}
+
+/// How a cloud was smoothed, in model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quiet {
+    /// Root mean square of the ways that the points were moved.
+    pub moved_rms: f64,
+    /// The longest.
+    pub moved_max: f64,
+}
+
+/// What a bake of an input with these options bakes; `max_error` is its bound in model units.
+///
+/// Of the options only the edges, their angle, the meaning and `denoise` matter.
+///
+/// # Errors
+/// [`Error::Usage`] for a cloud whose noise the bound is below, unless it is to be smoothed and can be.
+pub fn meant<'a>(input: &'a Input, options: &'a Options, max_error: f64) -> Result<Meant<'a>> {
+    match input {
+        Input::Mesh(mesh) => Ok(of_mesh(input, mesh, options, max_error)),
+        Input::Cloud(cloud) => of_cloud(input, cloud, options, max_error),
+    }
+}
+
+fn itself<'a>(input: &'a Input, options: &'a Options) -> Meant<'a> {
+    Meant {
+        input: Cow::Borrowed(input),
+        edges: Cow::Borrowed(&options.edges),
+        noise: None,
+        made: Made::Itself,
+    }
+}
+
+fn of_mesh<'a>(input: &'a Input, mesh: &Mesh, options: &'a Options, max_error: f64) -> Meant<'a> {
+    let only_beyond = match options.meaning {
+        Meaning::Facets => return itself(input, options),
+        Meaning::Smooth => None,
+        Meaning::Auto => Some(NOTICEABLE * max_error),
+    };
+    let smoothing = Smoothing {
+        degrees: options.edge_angle,
+        fineness: Fineness {
+            tolerance: SMOOTH_SHARE * max_error,
+            longest: piece_length(max_error, diagonal(&mesh.vertices.positions)),
+            most: MOST_PIECES,
+        },
+        only_beyond,
+    };
+    let features = features(mesh, &options.edges, options.edge_angle, max_error);
+    let Some(Smoothed { mesh, lines, found }) = smoothed(mesh, &features, &smoothing) else {
+        return itself(input, options);
+    };
+    let edges = match &options.edges {
+        Edges::Given(_) => {
+            let frame = mesh.vertices.frame;
+            let lines = lines.iter().map(|line| line.map(|place| frame.to_input(place)).to_vec());
+            Cow::Owned(Edges::Given(Polylines { lines: lines.collect() }))
+        }
+        kept => Cow::Borrowed(kept),
+    };
+    Meant { input: Cow::Owned(Input::Mesh(mesh)), edges, noise: None, made: Made::Smooth(found) }
+}
+
+fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error: f64) -> Result<Meant<'a>> {
+    let noise = noise(&cloud.positions);
+    let itself = Meant { noise, ..itself(input, options) };
+    let Some(noise) = noise.filter(|noise| max_error < LEAST_BOUND * noise) else { return Ok(itself) };
+    let least = if options.denoise { least_bound(noise) } else { LEAST_BOUND * noise };
+    if max_error < least {
+        let scale = cloud.frame.scale();
+        let remedy = if options.denoise { "" } else { ", or --denoise to smooth them" };
+        return Err(Error::Usage(format!(
+            "the points scatter about their surface by {:.3e} (standard deviation, input units), too much for an \
+             error bound of {:.3e}: give a --max-error of {:.3e} or more{remedy}",
+            noise * scale,
+            max_error * scale,
+            least * scale * (1.0 + ROUNDED)
+        )));
+    }
+    let Quieted { cloud, moved_rms, moved_max } = quieted(cloud, noise, max_error)?;
+    let made = Made::Quiet(Quiet { moved_rms, moved_max });
+    Ok(Meant { input: Cow::Owned(Input::Cloud(cloud)), made, ..itself })
+}

@@ -1,0 +1,64 @@
+//! Noisy clouds: refused with advice, or smoothed as asked.
+
+use glam::DVec3;
+use qsplat::bake::{Made, MaxError, Options, Silent};
+use qsplat::deliver::deliver;
+use qsplat::error::Error;
+use qsplat::ingest::Input;
+
+use super::scene::{Draw, bake, cloud, options};
+
+/// Standard deviation of the points, a fraction of the sphere's radius.
+const NOISE: f64 = 5e-3;
+
+/// An error bound below twice the noise, in radii.
+const BOUND: f64 = 6e-3;
+
+/// Places that scatter about the unit sphere.
+fn noisy_sphere(count: usize) -> Vec<DVec3> {
+    let mut draw = Draw(77);
+    let place = |_| {
+        // About normal, of variance 1 (Irwin and Hall).
+        let mut normal = || (0..12).map(|_| draw.one()).sum::<f64>() - 6.0;
+        let off = DVec3::new(normal(), normal(), normal());
+        draw.direction() + NOISE * off
+    };
+    (0..count).map(place).collect()
+}
+
+#[test]
+fn a_bound_below_the_noise_is_refused_with_one_that_is_not() {
+    let cloud = cloud(&noisy_sphere(20_000), &[]);
+    let refused = deliver(&Input::Cloud(cloud.clone()), &options(MaxError::Absolute(BOUND)), &mut Silent);
+    let Err(Error::Usage(text)) = refused else { panic!("not refused: {refused:?}") };
+    let advised = text.split("--max-error of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert!(text.contains("--denoise"), "{text}");
+    let made = bake(&cloud, &options(MaxError::Absolute(advised.parse().unwrap())));
+    assert_eq!(made.baked.made, Made::Itself);
+}
+
+#[test]
+fn a_smoothed_cloud_is_the_sphere_it_was_taken_from() {
+    let mut places = noisy_sphere(20_000);
+    let options = Options { denoise: true, ..options(MaxError::Absolute(BOUND)) };
+    let made = bake(&cloud(&places, &[]), &options);
+    let Made::Quiet(quiet) = made.baked.made else { panic!("not smoothed") };
+    let scale = made.asset.frame.scale();
+    assert!((0.8..1.2).contains(&(quiet.moved_rms * scale / NOISE)), "{quiet:?}");
+    // A sphere needs some forty splats at this bound; the noise would need thousands.
+    assert!(made.asset.splats.len() < 150, "{}", made.asset.splats.len());
+    for splat in &made.asset.splats {
+        let center = made.asset.frame.to_input(splat.center);
+        assert!((center.length() - 1.0).abs() < 2.0 * BOUND, "{center}");
+    }
+    Draw(5).shuffle(&mut places);
+    assert_eq!(made.bytes, bake(&cloud(&places, &[]), &options).bytes, "the order of points");
+}
+
+#[test]
+fn what_no_smoothing_helps_is_refused_too() {
+    let options = Options { denoise: true, ..options(MaxError::Absolute(1e-4)) };
+    let refused = deliver(&Input::Cloud(cloud(&noisy_sphere(20_000), &[])), &options, &mut Silent);
+    let Err(Error::Usage(text)) = refused else { panic!("not refused: {refused:?}") };
+    assert!(text.contains("--max-error") && !text.contains("--denoise"), "{text}");
+}
