@@ -1,5 +1,6 @@
 //! The recipe: from a mesh or cloud to an asset, one stage a line.
 
+pub mod found_lines;
 pub mod meant;
 pub mod noise;
 pub mod options;
@@ -29,6 +30,7 @@ use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::grow::Grower;
+pub use found_lines::found_lines;
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
 

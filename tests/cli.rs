@@ -240,6 +240,57 @@ fn export_gives_faces_that_name_their_splat() {
 }
 
 #[test]
+fn edges_finds_the_lines_of_a_mesh_and_bake_takes_them() {
+    let directory = tempfile::tempdir().unwrap();
+    let lines = text(&directory.path().join("lines.obj"));
+    let (input, truth) = (fixture("part.ply"), fixture("part.edges.obj"));
+    let found = ok(&["edges", &input, "-o", &lines, "--against", &truth, "--json"]);
+    let found: serde_json::Value = serde_json::from_str(&found).unwrap();
+    for key in ["precision", "recall"] {
+        assert!(found[key].as_f64().unwrap() > 0.99, "{found}");
+    }
+    let documented = include_str!("../docs/edges-schema.md");
+    for (key, _) in found.as_object().unwrap() {
+        assert!(documented.contains(&format!("| `{key}` |")), "{key} is not documented");
+    }
+    let read = qsplat::ingest::read_edges(Path::new(&lines), &qsplat::ingest::Limits::default()).unwrap();
+    assert_eq!(read.segments() as u64, found["segments"].as_u64().unwrap());
+    let bakes = [&lines, "auto"].map(|edges| {
+        let file = text(&directory.path().join("part.qsplat"));
+        ok(&["bake", &input, "--edges", edges, "-o", &file]);
+        fs::read(file).unwrap()
+    });
+    assert!(bakes[0] == bakes[1], "the lines found are those that a bake finds");
+    let half = ok(&["edges", &input, "-o", &lines, "--edge-angle", "179", "--against", &truth]);
+    assert!(half.contains("recall        0.0 %"), "{half}");
+    let cloud = refused(&["edges", &fixture("torus-cloud.ply"), "-o", &lines]);
+    assert!(cloud.contains("torus-cloud.ply") && cloud.contains("mesh"), "{cloud}");
+}
+
+#[test]
+fn measure_knows_what_was_baked_in_the_place_of_facets() {
+    let directory = tempfile::tempdir().unwrap();
+    let [input, file] = ["coarse.obj", "coarse.qsplat"].map(|name| text(&directory.path().join(name)));
+    // An octahedron: the coarsest of spheres.
+    let corners = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n";
+    let normals = corners.replace('v', "vn");
+    let faces = [[1, 2, 3], [2, 4, 3], [4, 5, 3], [5, 1, 3], [2, 1, 6], [4, 2, 6], [5, 4, 6], [1, 5, 6]];
+    let faces: String = faces.iter().map(|[a, b, c]| format!("f {a}//{a} {b}//{b} {c}//{c}\n")).collect();
+    fs::write(&input, format!("{corners}{normals}{faces}")).unwrap();
+    let report = text(&directory.path().join("report.json"));
+    ok(&["bake", &input, "--surface", "auto", "-o", &file, "--max-error", "0.5%", "--report", &report]);
+    let report: Report = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+    assert!(report.input.unwrap().smooth);
+    let measured = |surface: &str| -> Measures {
+        let json = ok(&["measure", &file, "--against", &input, "--surface", surface, "--json"]);
+        serde_json::from_str(&json).unwrap()
+    };
+    let (smooth, facets) = (measured("auto"), measured("facets"));
+    assert!(smooth.backward.max <= 2.0 * smooth.budget && smooth.forward.max <= smooth.budget);
+    assert!(facets.backward.max > 0.05, "the facets lie far inside: {}", facets.backward.max);
+}
+
+#[test]
 fn verify_passes_and_finds_one_changed_coefficient() {
     let (directory, file) = baked();
     let golden = text(&directory.path().join("golden"));

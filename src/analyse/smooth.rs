@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::curved::{Patch, patches};
-use super::edges::{Edge, Edges};
+use super::edges::{Edge, Edges, Half};
 use super::refine::{halve, length, push_middle, split_triangles};
 use super::sides::Sides;
 use super::surface::NONE;
@@ -47,9 +47,7 @@ pub fn smooth(
     fineness: &Fineness,
 ) -> (Welded, Vec<bool>) {
     let patches = patches(&welded, &Edges::of(&welded.triangles), sides);
-    let mut corners: Vec<[Corner; 3]> = (0..patches.len() as u32)
-        .map(|patch| [DVec3::X, DVec3::Y, DVec3::Z].map(|weights| Corner { patch, weights }))
-        .collect();
+    let mut corners = whole(patches.len());
     for _ in 0..ROUNDS {
         let edges = Edges::of(&welded.triangles);
         let over = Over { patches: &patches, corners: &corners, welded: &welded };
@@ -67,8 +65,7 @@ pub fn smooth(
         for (index, edge) in edges.edges.iter().enumerate().filter(|&(index, _)| coarse[index]) {
             middles[index] = push_middle(&mut welded, edge.ends, offsets[index]);
             for half in edges.halves(edge) {
-                let [a, b] =
-                    [0, 1].map(|step| corners[half.face as usize][(half.corner as usize + step) % 3]);
+                let [a, b] = ends(&corners, half);
                 let middle = Corner { patch: a.patch, weights: 0.5 * (a.weights + b.weights) };
                 corner_middles[half.face as usize][half.corner as usize] = Some(middle);
             }
@@ -79,12 +76,21 @@ pub fn smooth(
     (welded, marked)
 }
 
+/// The corners of whole patches, as many as there are.
+fn whole(patches: usize) -> Vec<[Corner; 3]> {
+    let corners = |patch| [DVec3::X, DVec3::Y, DVec3::Z].map(|weights| Corner { patch, weights });
+    (0..patches as u32).map(corners).collect()
+}
+
+/// Where half an edge begins and where it ends.
+fn ends(corners: &[[Corner; 3]], half: &Half) -> [Corner; 2] {
+    [0, 1].map(|step| corners[half.face as usize][(half.corner as usize + step) % 3])
+}
+
 /// The greatest distance of a mesh's edges from the curved triangles over it, model units.
 pub(super) fn height(welded: &Welded, edges: &Edges, sides: &Sides) -> f64 {
     let patches = patches(welded, edges, sides);
-    let corner = |patch| [DVec3::X, DVec3::Y, DVec3::Z].map(|weights| Corner { patch, weights });
-    let corners: Vec<[Corner; 3]> = (0..patches.len() as u32).map(corner).collect();
-    let over = Over { patches: &patches, corners: &corners, welded };
+    let over = Over { patches: &patches, corners: &whole(patches.len()), welded };
     edges.edges.iter().map(|edge| over.height(edges, edge)).fold(0.0, f64::max)
 }
 
@@ -100,8 +106,7 @@ impl Over<'_> {
     fn offset(&self, edges: &Edges, edge: &Edge, t: f64) -> DVec3 {
         // All faces at an edge have one curve there.
         let half = edges.halves(edge)[0];
-        let [from, to] =
-            [0, 1].map(|step| self.corners[half.face as usize][(half.corner as usize + step) % 3]);
+        let [from, to] = ends(self.corners, &half);
         let [from, to] = if half.forward { [from, to] } else { [to, from] };
         let place = self.patches[from.patch as usize].at(from.weights.lerp(to.weights, t));
         let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());

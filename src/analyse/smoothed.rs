@@ -1,6 +1,6 @@
 //! The mesh of the smooth surface that another mesh stands for.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::edges::{Edges, crease_cosine, face_normals};
 use super::mesh_surface::{Features, Found, mark};
@@ -9,7 +9,6 @@ use super::smooth::{Fineness, height, smooth};
 use super::weld::{Welded, weld_shaded};
 use crate::model::cloud::Cloud;
 use crate::model::mesh::Mesh;
-use glam::Vec3;
 
 /// How a mesh is smoothed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +53,10 @@ pub fn smoothed(mesh: &Mesh, features: &Features, smoothing: &Smoothing) -> Opti
     let edges = Edges::of(&welded.triangles);
     let hard = hard_edges(&welded, &edges, &marked, smoothing.degrees, &shading);
     let sides = Sides::of(&welded, &edges, &hard, &shading);
-    if let Some(least) = smoothing.only_beyond {
-        if !(height(&welded, &edges, &sides) > least && is_meant(&welded, &edges, &hard, &shading)) {
-            return None;
-        }
+    if let Some(least) = smoothing.only_beyond
+        && !(height(&welded, &edges, &sides) > least && is_meant(&welded, &edges, &hard, &shading))
+    {
+        return None;
     }
     let (fine, marked) = smooth(welded, marked, &sides, &smoothing.fineness);
     let edges = Edges::of(&fine.triangles);

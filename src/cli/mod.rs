@@ -5,6 +5,7 @@
 
 mod bake;
 mod device;
+mod edges;
 mod export;
 mod info;
 mod measure;
@@ -39,6 +40,7 @@ pub(crate) struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Bake(bake::Arguments),
+    Edges(edges::Arguments),
     Info(info::Arguments),
     Render(render::Arguments),
     Verify(verify::Arguments),
@@ -88,6 +90,7 @@ impl Arguments {
         let mut notes = Notes { out: notes, quiet: self.quiet };
         match self.command {
             Command::Bake(arguments) => arguments.run(&mut notes),
+            Command::Edges(arguments) => arguments.run(),
             Command::Info(arguments) => arguments.run(),
             Command::Render(arguments) => arguments.run(&mut notes),
             Command::Verify(arguments) => arguments.run(&mut notes),

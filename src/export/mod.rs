@@ -8,6 +8,7 @@
 //! Both the chords and the triangles stay within a share of the error budget, which is
 //! [`crate::tolerance::EXPORT_SHARE`] unless another is asked for.
 
+pub mod lines;
 pub mod outline;
 pub mod ply;
 pub mod tessellate;

@@ -5,7 +5,7 @@
 /// repeated edges are left out.
 ///
 /// The result depends on the vertex numbers alone, not on the order or direction of the edges.
-pub(super) fn chain(edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
+pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut both: Vec<[u32; 2]> =
         edges.iter().filter(|[a, b]| a != b).flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
     both.sort_unstable();

@@ -11,7 +11,7 @@
 //! bytes that are there.
 
 mod assemble;
-mod chain;
+pub(crate) mod chain;
 mod color;
 mod detect;
 mod faces;

@@ -24,6 +24,7 @@ mod patches;
 #[cfg(test)]
 mod planted;
 mod point_grid;
+pub mod recall;
 pub mod reference;
 mod roots;
 mod samples;
