@@ -31,6 +31,7 @@ use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::grow::Grower;
 pub use found_lines::found_lines;
+use meant::check_noise;
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
 
@@ -107,6 +108,7 @@ pub fn bake(
     let max_error = model_error(options, diagonal, cloud.frame.scale())?;
     clock.stage(progress, "analyse");
     let meant = meant(input, options, max_error)?;
+    check_noise(&meant, options.denoise, max_error)?;
     let Analysed { mut surface, features, left_out } = analyse(&meant, options, max_error, diagonal)?;
     let colors_left_out = choose_colors(&mut surface, options.colors)?;
     clock.stage(progress, "sample");

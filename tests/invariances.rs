@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use glam::{DQuat, DVec3, Vec3};
-use qsplat::bake::{Colors, Edges, MaxError, Normals, Options, Silent};
+use qsplat::bake::{MaxError, Options, Silent};
 use qsplat::deliver::{Delivery, deliver};
 use qsplat::ingest::{self, Input, Limits};
 use qsplat::model::cloud::Cloud;
@@ -24,15 +24,11 @@ fn fixture(name: &str) -> Mesh {
 }
 
 fn bake(mesh: &Mesh) -> Delivery {
-    let options = Options {
-        max_error: MaxError::Relative(BUDGET),
-        edges: Edges::Auto,
-        edge_angle: 40.0,
-        effort: 3,
-        normals: Normals::Auto,
-        colors: Colors::Auto,
-        ..Options::default()
-    };
+    bake_within(mesh, MaxError::Relative(BUDGET))
+}
+
+fn bake_within(mesh: &Mesh, max_error: MaxError) -> Delivery {
+    let options = Options { max_error, effort: 3, ..Options::default() };
     deliver(&Input::Mesh(mesh.clone()), &options, &mut Silent).unwrap()
 }
 
@@ -175,16 +171,7 @@ fn rotation_translation_and_scale_hardly_change_the_count() {
             asset.diagonal * asset.frame.scale()
         };
         let absolute = |mesh: &Mesh, scale: f64| {
-            let options = Options {
-                max_error: MaxError::Absolute(BUDGET * diagonal * scale),
-                edges: Edges::Auto,
-                edge_angle: 40.0,
-                effort: 3,
-                normals: Normals::Auto,
-                colors: Colors::Auto,
-                ..Options::default()
-            };
-            let asset = deliver(&Input::Mesh(mesh.clone()), &options, &mut Silent).unwrap().asset;
+            let asset = bake_within(mesh, MaxError::Absolute(BUDGET * diagonal * scale)).asset;
             assert!(asset.fit.max <= asset.max_error, "{name}");
             asset.splats.len()
         };

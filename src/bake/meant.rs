@@ -68,10 +68,11 @@ pub struct Quiet {
 
 /// What a bake of an input with these options bakes; `max_error` is its bound in model units.
 ///
-/// Of the options only the edges, their angle, the meaning and `denoise` matter.
+/// Of the options only the edges, their angle, the meaning and `denoise` matter. A cloud too noisy to
+/// be smoothed for the bound stands for itself: [`check_noise`] refuses it.
 ///
 /// # Errors
-/// [`Error::Usage`] for a cloud whose noise the bound is below, unless it is to be smoothed and can be.
+/// [`Error::Internal`] should the neighbour search not take the points of a cloud.
 pub fn meant<'a>(input: &'a Input, options: &'a Options, max_error: f64) -> Result<Meant<'a>> {
     match input {
         Input::Mesh(mesh) => Ok(of_mesh(input, mesh, options, max_error)),
@@ -121,20 +122,31 @@ fn of_mesh<'a>(input: &'a Input, mesh: &Mesh, options: &'a Options, max_error: f
 fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error: f64) -> Result<Meant<'a>> {
     let noise = noise(&cloud.positions);
     let itself = Meant { noise, ..itself(input, options) };
-    let Some(noise) = noise.filter(|noise| max_error < LEAST_BOUND * noise) else { return Ok(itself) };
-    let least = if options.denoise { least_bound(noise) } else { LEAST_BOUND * noise };
-    if max_error < least {
-        let scale = cloud.frame.scale();
-        let remedy = if options.denoise { "" } else { ", or --denoise to smooth them" };
-        return Err(Error::Usage(format!(
-            "the points scatter about their surface by {:.3e} (standard deviation, input units), too much for an \
-             error bound of {:.3e}: give a --max-error of {:.3e} or more{remedy}",
-            noise * scale,
-            max_error * scale,
-            least * scale * (1.0 + ROUNDED)
-        )));
-    }
+    let wanted =
+        |noise: &f64| options.denoise && (least_bound(*noise)..LEAST_BOUND * noise).contains(&max_error);
+    let Some(noise) = noise.filter(wanted) else { return Ok(itself) };
     let Quieted { cloud, moved_rms, moved_max } = quieted(cloud, noise, max_error)?;
     let made = Made::Quiet(Quiet { moved_rms, moved_max });
     Ok(Meant { input: Cow::Owned(Input::Cloud(cloud)), made, ..itself })
+}
+
+/// Refuses a cloud whose noise an error bound (model units) is below.
+///
+/// # Errors
+/// [`Error::Usage`] with the least bound that is not, in input units.
+pub fn check_noise(meant: &Meant<'_>, denoise: bool, max_error: f64) -> Result<()> {
+    let Some(noise) = meant.noise else { return Ok(()) };
+    let least = if denoise { least_bound(noise) } else { LEAST_BOUND * noise };
+    if max_error >= least {
+        return Ok(());
+    }
+    let scale = meant.input.cloud().frame.scale();
+    let remedy = if denoise { "" } else { ", or --denoise to smooth them" };
+    Err(Error::Usage(format!(
+        "the points scatter about their surface by {:.3e} (standard deviation, input units), too much for an \
+         error bound of {:.3e}: give a --max-error of {:.3e} or more{remedy}",
+        noise * scale,
+        max_error * scale,
+        least * scale * (1.0 + ROUNDED)
+    )))
 }

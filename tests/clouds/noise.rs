@@ -1,7 +1,7 @@
 //! Noisy clouds: refused with advice, or smoothed as asked.
 
 use glam::DVec3;
-use qsplat::bake::{Made, MaxError, Options, Silent};
+use qsplat::bake::{Made, MaxError, Options, Silent, meant};
 use qsplat::deliver::deliver;
 use qsplat::error::Error;
 use qsplat::ingest::Input;
@@ -35,6 +35,16 @@ fn a_bound_below_the_noise_is_refused_with_one_that_is_not() {
     assert!(text.contains("--denoise"), "{text}");
     let made = bake(&cloud, &options(MaxError::Absolute(advised.parse().unwrap())));
     assert_eq!(made.baked.made, Made::Itself);
+}
+
+#[test]
+fn what_is_only_measured_is_not_refused() {
+    let input = Input::Cloud(cloud(&noisy_sphere(20_000), &[]));
+    let options = options(MaxError::Absolute(BOUND));
+    let meant = meant(&input, &options, BOUND / input.cloud().frame.scale()).unwrap();
+    let noise = meant.noise.unwrap() * input.cloud().frame.scale();
+    assert_eq!(meant.made, Made::Itself);
+    assert!((0.75..1.25).contains(&(noise / NOISE)), "{noise}");
 }
 
 #[test]
