@@ -105,7 +105,7 @@ pub fn bake(
     let mut clock = Clock::default();
     let cloud = input.cloud();
     let diagonal = diagonal(&cloud.positions);
-    let max_error = model_error(options, diagonal, cloud.frame.scale())?;
+    let max_error = model_error(options, input)?;
     clock.stage(progress, "analyse");
     let meant = meant(input, options, max_error)?;
     check_noise(&meant, options.denoise, max_error)?;
@@ -152,8 +152,12 @@ fn diagonal(positions: &[Vec3]) -> f64 {
     (high.as_dvec3() - low.as_dvec3()).length()
 }
 
-/// The error bound in model units.
-fn model_error(options: &Options, diagonal: f64, scale: f64) -> Result<f64> {
+/// The error bound of a bake in model units.
+///
+/// # Errors
+/// [`Error::Usage`] for options out of range, and for an input without extent.
+pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
+    let (diagonal, scale) = (diagonal(&input.cloud().positions), input.cloud().frame.scale());
     if !(1..=9).contains(&options.effort) {
         return Err(Error::Usage(format!("effort {} is not within 1 to 9", options.effort)));
     }
@@ -294,7 +298,8 @@ pub fn feature_lines(
 }
 
 /// Lines in model units.
-fn model_lines(lines: &Polylines, frame: &Frame) -> Vec<Vec<DVec3>> {
+#[must_use]
+pub fn model_lines(lines: &Polylines, frame: &Frame) -> Vec<Vec<DVec3>> {
     lines.lines.iter().map(|line| line.iter().map(|&point| frame.to_model(point)).collect()).collect()
 }
 

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::edges::{Edges, crease_cosine, face_normals};
 use super::mesh_surface::{Features, Found, mark};
+use super::refine::length;
 use super::sides::{Sides, hard_edges};
 use super::smooth::{Fineness, height, smooth};
 use super::weld::{Welded, weld_shaded};
@@ -39,6 +40,9 @@ const FLAT: f64 = 0.999_85;
 /// A mesh without normals stands for a smooth surface if so much of what bends, by length, bends by
 /// less than [`GENTLE`]: facets that nobody took for smooth are coarser somewhere.
 const MOSTLY: f64 = 0.9;
+
+/// The same of a mesh with normals, by the edges over which they go on.
+const HALF: f64 = 0.5;
 
 /// Cosine of 35°: a circle of fewer than 11 sides is a polygon to most eyes.
 const GENTLE: f64 = 0.82;
@@ -76,21 +80,21 @@ pub fn smoothed(mesh: &Mesh, features: &Features, smoothing: &Smoothing) -> Opti
 /// the edges that bend; without normals most of them bend gently.
 fn is_meant(welded: &Welded, edges: &Edges, hard: &[bool], shading: &[[Vec3; 3]]) -> bool {
     let normals = face_normals(&welded.positions, &welded.triangles);
+    let by_angle = shading.is_empty();
     let (mut whole, mut smooth) = (0.0, 0.0);
     for (edge, &hard) in edges.edges.iter().zip(hard) {
         let Some(cosine) = crease_cosine(edges, edge, &normals).filter(|cosine| *cosine < FLAT) else {
             continue;
         };
-        let [a, b] = edge.ends.map(|v| welded.positions[v as usize].as_dvec3());
-        let length = a.distance(b);
-        if shading.is_empty() {
-            whole += if hard { 0.0 } else { length };
-            smooth += if !hard && cosine > GENTLE { length } else { 0.0 };
-        } else {
-            whole += length;
-            smooth += if hard { 0.0 } else { length };
+        if by_angle && hard {
+            // A sharp edge is one whatever the facets around it stand for.
+            continue;
+        }
+        let length = length(welded, edge);
+        whole += length;
+        if !hard && (!by_angle || cosine > GENTLE) {
+            smooth += length;
         }
     }
-    let enough = if shading.is_empty() { MOSTLY } else { 0.5 };
-    smooth > enough * whole
+    smooth > whole * if by_angle { MOSTLY } else { HALF }
 }

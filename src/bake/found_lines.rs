@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::options::{Edges, Options};
-use super::{diagonal, feature_lines, model_error};
+use super::{feature_lines, model_error};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
 use crate::ingest::chain::chain;
@@ -29,7 +29,7 @@ pub fn found_lines(input: &Input, options: &Options) -> Result<Polylines> {
                 .into(),
         ));
     }
-    let max_error = model_error(options, diagonal(&input.cloud().positions), frame.scale())?;
+    let max_error = model_error(options, input)?;
     let segments = feature_lines(input, &Edges::Auto, options.edge_angle, max_error).unwrap_or_default();
     let lines = cornered(&joined(&segments));
     let lines = lines.into_iter().map(|line| straightened(&line));

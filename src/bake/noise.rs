@@ -139,9 +139,9 @@ impl Patch {
     }
 }
 
-/// How many points a fit needs to hide what this many times its scatter, or less, would show: the
-/// middle of a quadric fitted to `n` points scatters by about `2 / sqrt(n)` of theirs.
-const FEWER: f64 = 4.0;
+/// A quadric fitted to `n` points scatters in its middle by the square root of this over `n`, a
+/// share of what the points do.
+const LEVERAGE: f64 = 4.0;
 
 /// Smoothed points scatter by this share of the error bound.
 const QUIET: f64 = 1.0 / 6.0;
@@ -156,8 +156,8 @@ const FARTHEST: f64 = 6.0;
 /// The least error bound, model units, for which a cloud of this noise can be smoothed.
 #[must_use]
 pub fn least_bound(noise: f64) -> f64 {
-    // Twice the scatter that it is smoothed to elsewhere, by as many points as there may be.
-    0.5 * noise / QUIET * (FEWER / SMOOTHED_WITH[1] as f64).sqrt()
+    // There the most points smooth to twice the scatter that is aimed at.
+    0.5 * noise / QUIET * (LEVERAGE / SMOOTHED_WITH[1] as f64).sqrt()
 }
 
 /// A cloud whose points are moved onto the quadrics fitted to the points around them.
@@ -180,7 +180,7 @@ pub struct Quieted {
 /// [`crate::Error::Internal`] should the neighbour search not take the points.
 pub fn quieted(cloud: &Cloud, noise: f64, max_error: f64) -> Result<Quieted> {
     let ratio = noise / (QUIET * max_error);
-    let count = ((FEWER * ratio * ratio).ceil() as usize).clamp(SMOOTHED_WITH[0], SMOOTHED_WITH[1]);
+    let count = ((LEVERAGE * ratio * ratio).ceil() as usize).clamp(SMOOTHED_WITH[0], SMOOTHED_WITH[1]);
     // Along the curve, so that the order in the file does not matter, even between points equally far.
     let order = order(&cloud.positions);
     let positions: Vec<Vec3> = order.iter().map(|&n| cloud.positions[n as usize]).collect();

@@ -7,7 +7,7 @@ use qsplat::bake::meant::Quiet;
 use qsplat::bake::{
     Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, Made, MaxError, Meaning, Normals, Options, Shapes,
 };
-use qsplat::error::{Error, Result};
+use qsplat::error::Result;
 use qsplat::ingest::Input;
 use qsplat::report::{self, Report};
 use qsplat::tolerance::DEFAULT_EDGE_ANGLE;
@@ -146,11 +146,7 @@ impl Arguments {
         let input = source::input(&self.input)?;
         let mut stages = clock.finish();
         let delivery =
-            deliver::deliver(&input, &options, progress.as_mut()).map_err(|error| match error {
-                // What cannot be baked as asked is said of a file.
-                Error::Usage(what) => Error::Usage(format!("{}: {what}", self.input.display())),
-                other => other,
-            })?;
+            deliver::deliver(&input, &options, progress.as_mut()).map_err(source::of(&self.input))?;
         stages.extend(delivery.stages.iter().cloned());
         let mut clock = Clock::default();
         clock.stage(progress.as_mut(), "write");

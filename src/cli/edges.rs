@@ -3,15 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::DVec3;
-use qsplat::bake::{MaxError, Options, found_lines};
-use qsplat::deliver::model;
+use qsplat::bake::{MaxError, Options, found_lines, model_error, model_lines};
 use qsplat::error::{Error, Result};
 use qsplat::export::lines::obj;
 use qsplat::format;
 use qsplat::ingest::{self, Input};
 use qsplat::measure::recall::share_near;
-use qsplat::model::polyline::Polylines;
+use qsplat::model::polyline::{Polylines, is_closed};
 use qsplat::tolerance::DEFAULT_EDGE_ANGLE;
 use serde::Serialize;
 
@@ -61,24 +59,21 @@ impl Arguments {
         let input = source::input(&self.input)?;
         let options =
             Options { edge_angle: self.edge_angle, max_error: self.max_error, ..Options::default() };
-        let lines = found_lines(&input, &options).map_err(|error| match error {
-            Error::Usage(what) => Error::Usage(format!("{}: {what}", self.input.display())),
-            other => other,
-        })?;
+        let lines = found_lines(&input, &options).map_err(source::of(&self.input))?;
         let compared = match &self.against {
             Some(path) => {
-                Some(self.compared(&input, &lines, &ingest::read_edges(path, &ingest::Limits::default())?))
+                let truth = ingest::read_edges(path, &ingest::Limits::default())?;
+                Some(compared(&input, &options, &lines, &truth)?)
             }
             None => None,
         };
         format::write_file(&self.output, obj(&lines).as_bytes())?;
-        let length = |line: &Vec<DVec3>| line.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
         let found = Found {
             schema: "qsplat-edges/1",
             lines: lines.lines.len(),
-            closed: lines.lines.iter().filter(|line| line.len() > 2 && line.first() == line.last()).count(),
+            closed: lines.lines.iter().filter(|line| is_closed(line)).count(),
             segments: lines.segments(),
-            length: lines.lines.iter().map(length).fold(0.0, |sum, length| sum + length),
+            length: lines.length(),
             precision: compared.map(|shares| shares[0]),
             recall: compared.map(|shares| shares[1]),
         };
@@ -88,20 +83,13 @@ impl Arguments {
         }
         Ok(Outcome::text(found.table()))
     }
+}
 
-    /// Precision and recall.
-    fn compared(&self, input: &Input, found: &Polylines, truth: &Polylines) -> [f64; 2] {
-        let frame = input.cloud().frame;
-        let in_model = |lines: &Polylines| -> Vec<Vec<DVec3>> {
-            lines.lines.iter().map(|line| line.iter().map(|&p| frame.to_model(p)).collect()).collect()
-        };
-        let within = match self.max_error {
-            MaxError::Relative(share) => share * model(input).diagonal(),
-            MaxError::Absolute(length) => length / frame.scale(),
-        };
-        let (found, truth) = (in_model(found), in_model(truth));
-        [share_near(&found, &truth, within), share_near(&truth, &found, within)]
-    }
+/// Precision and recall, within the error bound.
+fn compared(input: &Input, options: &Options, found: &Polylines, truth: &Polylines) -> Result<[f64; 2]> {
+    let within = model_error(options, input)?;
+    let [found, truth] = [found, truth].map(|lines| model_lines(lines, &input.cloud().frame));
+    Ok([share_near(&found, &truth, within), share_near(&truth, &found, within)])
 }
 
 impl Found {

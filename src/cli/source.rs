@@ -17,6 +17,14 @@ pub(super) fn is_qsplat(path: &Path) -> Result<bool> {
     Ok(start == format::MAGIC)
 }
 
+/// Says of a file what cannot be done with it as asked.
+pub(super) fn of(path: &Path) -> impl Fn(Error) -> Error {
+    move |error| match error {
+        Error::Usage(what) => Error::Usage(format!("{}: {what}", path.display())),
+        other => other,
+    }
+}
+
 /// Reads a mesh or cloud.
 pub(super) fn input(path: &Path) -> Result<Input> {
     ingest::read(path, &ingest::Limits::default())

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::model::polyline::Polylines;
+use crate::model::polyline::{Polylines, is_closed};
 
 /// An OBJ of polylines: `v` and `l` records. Coordinates read back as they are; a line that closes
 /// names its first point again.
@@ -12,7 +12,7 @@ pub fn obj(lines: &Polylines) -> String {
     let mut records = String::new();
     let mut next = 1;
     for line in &lines.lines {
-        let closed = line.len() > 2 && line.first() == line.last();
+        let closed = is_closed(line);
         let points = if closed { &line[..line.len() - 1] } else { &line[..] };
         for p in points {
             // Writing to a string cannot fail.
