@@ -274,8 +274,9 @@ fn features(mesh: &Mesh, edges: &Edges, edge_angle: f64, max_error: f64) -> Feat
 /// The lines along which a bake with these options cuts its splats, model units: feature lines,
 /// and a mesh's open borders, where splats are cut as well.
 ///
-/// Found lines come as segments of two points, given ones as they are, whether the input has an
-/// edge there or not. `edge_angle` is in degrees; `max_error`, in model units, decides which
+/// Lines come as segments of two points, given ones whether the input has an edge there or not,
+/// but for those along which a mesh is smooth. `edge_angle` is in degrees; `max_error`, in model
+/// units, decides which
 /// found lines are too short to count. `None` where there are no lines: for a cloud without given
 /// ones, for a smooth closed mesh, and for [`Edges::None`].
 #[must_use]

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::chains;
 use super::creases::creases;
 use super::edges::Edges;
-use super::given_lines::{self, Matched};
+use super::given_lines::{self, Matched, Meant};
 use super::refine::refine;
 use super::split::split;
 use super::surface::Surface;
@@ -74,20 +74,29 @@ fn marked(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Welded, Vec
 /// The lines that a mesh's surface is cut along, model units, each a segment of two points: its
 /// borders, where its faces do not join two by two, and its feature edges as they are found.
 ///
-/// Given segments are returned as they are, beside the borders: whether the mesh has an edge
-/// there or not.
+/// Given segments are returned as they are, beside the borders, whether the mesh has an edge there
+/// or not; but for those along edges at which it is smooth.
 #[must_use]
 pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<Vec<DVec3>> {
-    let (found, given) = match features {
-        Features::Given(segments) => (&Features::None, segments.as_slice()),
-        Features::Sharp { .. } | Features::None => (features, [].as_slice()),
+    let (welded, marked, given) = match features {
+        Features::Given(segments) => {
+            let welded = weld(mesh);
+            let edges = Edges::of(&welded.triangles);
+            let smooth = given_lines::mark(&welded, &edges, segments).smooth;
+            let given = segments.iter().zip(smooth).filter(|(_, smooth)| !smooth).map(|(given, _)| *given);
+            let given = given.collect();
+            (welded, vec![false; edges.edges.len()], given)
+        }
+        Features::Sharp { .. } | Features::None => {
+            let (welded, marked, _) = marked(mesh, features, making);
+            (welded, marked, Vec::new())
+        }
     };
-    let (welded, marked, _) = marked(mesh, found, making);
     let edges = Edges::of(&welded.triangles);
     let place = |v: u32| welded.positions[v as usize].as_dvec3();
     let cut = edges.edges.iter().zip(&marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
     let found = cut.map(|(edge, _)| edge.ends.map(place));
-    found.chain(given.iter().copied()).map(|segment| segment.to_vec()).collect()
+    found.chain(given).map(|segment| segment.to_vec()).collect()
 }
 
 /// Which edges of a mesh are feature edges, and what was found.
@@ -100,7 +109,7 @@ pub(super) fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
             (marked, None)
         }
         Features::Given(segments) => {
-            let (marked, matched) = given_lines::mark(welded, &edges, segments);
+            let Meant { marked, matched, .. } = given_lines::mark(welded, &edges, segments);
             (marked, Some(matched))
         }
         Features::None => (vec![false; edges.edges.len()], None),

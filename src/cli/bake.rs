@@ -231,6 +231,7 @@ impl Arguments {
             feature_edges: baked.features.feature_edges as u64,
             line_segments,
             lines_matched: matched.map(|matched| matched.matched_length / matched.length),
+            lines_smooth: matched.map(|matched| matched.smooth_length / matched.length),
         }
     }
 

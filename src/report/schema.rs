@@ -44,6 +44,10 @@ pub struct Input {
     pub line_segments: Option<u64>,
     /// Share of the given lines' length that was found on the mesh; `None` without lines.
     pub lines_matched: Option<f64>,
+    /// Share of the given lines' length along which the mesh is smooth: nothing is cut there;
+    /// `None` without lines.
+    #[serde(default)]
+    pub lines_smooth: Option<f64>,
 }
 
 /// How far points were moved, fractions of the diagonal.

@@ -54,6 +54,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         feature_edges,
         line_segments: None,
         lines_matched: None,
+        lines_smooth: None,
     };
     let options = Options {
         max_error: 1e-3,
