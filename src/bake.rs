@@ -4,6 +4,10 @@ pub mod found_lines;
 pub mod meant;
 pub mod noise;
 pub mod options;
+mod patch;
+pub mod quiet;
+#[cfg(test)]
+mod scattered;
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -236,14 +240,18 @@ struct Analysed {
 /// that they meet, are left out.
 const SHORTEST_LINE: f64 = 8.0;
 
+/// Given lines that lie off the edges they mean by at most this share of the diagonal are moved
+/// onto them: five error bounds at the default.
+const BESIDE: f64 = 0.005;
+
 fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) -> Result<Analysed> {
     match meant.input.as_ref() {
         Input::Mesh(mesh) => {
             let features = features(mesh, &meant.edges, options.edge_angle, max_error);
             let (surface, found) = mesh_surface(mesh, &features, &making(max_error, diagonal));
             // Of a smooth surface's lines, the input's are those to tell of.
-            let matched = match meant.made {
-                Made::Smooth(before) => before.matched,
+            let matched = match &meant.made {
+                Made::Smooth(before) => before.matched.clone(),
                 Made::Itself | Made::Quiet(_) => found.matched,
             };
             Ok(Analysed { surface, features: Found { matched, ..found }, ..Analysed::default() })
@@ -254,7 +262,7 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
                 Edges::Auto | Edges::None => Vec::new(),
             };
             let found = cloud_surface(cloud, options.normals.into(), &lines)?;
-            let feature_edges = found.matched.map_or(0, |matched| matched.edges);
+            let feature_edges = found.matched.as_ref().map_or(0, |matched| matched.edges);
             let features = Found { feature_edges, matched: found.matched };
             let reach = Reach { radius: THIN_RADIUS * max_error, offset: THIN_OFFSET * max_error };
             Ok(Analysed { surface: thin(found.surface, reach), features, left_out: found.left_out })
@@ -267,7 +275,10 @@ fn features(mesh: &Mesh, edges: &Edges, edge_angle: f64, max_error: f64) -> Feat
     match edges {
         Edges::Auto => Features::Sharp { degrees: edge_angle, shortest: SHORTEST_LINE * max_error },
         Edges::None => Features::None,
-        Edges::Given(lines) => Features::Given(segments(lines, &mesh.vertices.frame)),
+        Edges::Given(lines) => Features::Given {
+            segments: segments(lines, &mesh.vertices.frame),
+            beside: BESIDE * diagonal(&mesh.vertices.positions),
+        },
     }
 }
 

@@ -86,7 +86,7 @@ fn cut(
 fn matched(lines: &[Vec<DVec3>], cut: Option<&LineCut>) -> Matched {
     let length = lines.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
     let (edges, matched_length) = cut.map_or((0, 0.0), LineCut::found);
-    Matched { edges, length, matched_length: matched_length.min(length), smooth_length: 0.0 }
+    Matched { edges, length, matched_length: matched_length.min(length), ..Matched::default() }
 }
 
 /// The surface over all points that are no outliers, and those on lines.

@@ -4,8 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
-use super::edges::{Edges, crease_cosine, face_normals};
+use super::edges::{Edge, Edges, crease_cosine, face_normals};
 use super::segment_grid::SegmentGrid;
+use super::snap::{Piece, pieces, snap};
 use super::weld::Welded;
 
 /// An edge is meant by a line that passes its ends and its middle within this share of the
@@ -21,7 +22,7 @@ const SMOOTH_DEGREES: f64 = 5.0;
 const SHARP_DEGREES: f64 = 10.0;
 
 /// What became of the given lines, in segments of mesh edges and lengths in model units.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matched {
     /// Mesh edges marked as feature edges.
     pub edges: usize,
@@ -31,6 +32,10 @@ pub struct Matched {
     pub matched_length: f64,
     /// Length of those at which the surface is smooth: they are no feature edges.
     pub smooth_length: f64,
+    /// Length of the given lines that pass beside the edges they mean, and were moved onto them.
+    pub moved_length: f64,
+    /// Given segments, ascending, that lie beside no edge at all: they mean nothing.
+    pub lost: Vec<u32>,
 }
 
 /// What given lines mean on a mesh.
@@ -38,8 +43,9 @@ pub struct Matched {
 pub struct Meant {
     /// For each edge of the mesh, whether it is a feature edge.
     pub marked: Vec<bool>,
-    /// For each given segment, whether it runs along edges at which the surface is smooth.
-    pub smooth: Vec<bool>,
+    /// The given lines, as segments, less those that mean nothing and those along edges at which
+    /// the surface is smooth; where they were moved, the edges they mean.
+    pub lines: Vec<[DVec3; 2]>,
     /// What became of the lines.
     pub matched: Matched,
 }
@@ -47,25 +53,48 @@ pub struct Meant {
 /// Marks the edges that the given segments (model units) run along.
 ///
 /// A segment from vertex to vertex of the mesh means the edge between them. Only the
-/// segments that are no edge are compared by distance.
+/// segments that are no edge are compared by distance, and those that run along no edge either
+/// mean the creases beside them, no farther than `reach` (model units).
 #[must_use]
-pub fn mark(welded: &Welded, edges: &Edges, segments: &[[DVec3; 2]]) -> Meant {
+pub fn mark(welded: &Welded, edges: &Edges, segments: &[[DVec3; 2]], reach: f64) -> Meant {
     let vertices = VertexGrid::new(&welded.positions);
     let exact = |[a, b]: &[DVec3; 2]| edges.find(vertices.at(*a)?, vertices.at(*b)?);
     let exact: Vec<Option<usize>> = segments.iter().map(exact).collect();
     let mut followed = vec![false; edges.edges.len()];
     exact.iter().flatten().for_each(|&edge| followed[edge] = true);
-    let loose =
-        || segments.iter().zip(&exact).filter(|(_, exact)| exact.is_none()).map(|(segment, _)| *segment);
-    if loose().next().is_some() {
-        mark_near(welded, edges, loose().collect(), &mut followed);
+    let loose: Vec<u32> =
+        (0_u32..).zip(&exact).filter(|(_, exact)| exact.is_none()).map(|(n, _)| n).collect();
+    if !loose.is_empty() {
+        mark_near(welded, edges, loose.iter().map(|&n| segments[n as usize]).collect(), &mut followed);
     }
-    let marked = sharp(welded, edges, &followed);
+    let turns = Turns::of(welded, edges);
+    let near = Followed::new(welded, edges, &followed);
+    let stray: Vec<Piece> = loose
+        .iter()
+        .flat_map(|&n| pieces(n, segments[n as usize], reach))
+        .filter(|piece| near.at(piece.middle()).is_none())
+        .collect();
+    let snapped = snap(welded, edges, [&turns.creases(edges), &followed], &stray, reach);
+    let beside = followed
+        .iter()
+        .zip(&snapped.edges)
+        .map(|(followed, snapped)| *followed || *snapped)
+        .collect::<Vec<_>>();
+    let marked = turns.sharp(welded, edges, &beside);
+    let runs_smooth = |n: usize| exact[n].or_else(|| near.at(0.5 * (segments[n][0] + segments[n][1])));
+    let mut is_stray = vec![false; segments.len()];
+    stray.iter().for_each(|piece| is_stray[piece.segment as usize] = true);
+    let kept =
+        (0..segments.len()).filter(|&n| !is_stray[n] && runs_smooth(n).is_some_and(|edge| marked[edge]));
+    let moved = (0..marked.len()).filter(|&edge| snapped.edges[edge] && marked[edge]);
+    let lines = kept.map(|n| segments[n]).chain(moved.map(|edge| place(welded, edges.edges[edge].ends)));
     let matched = Matched {
         length: segments.iter().map(|[a, b]| a.distance(*b)).sum(),
-        ..matched(welded, edges, &followed, &marked)
+        moved_length: snapped.length,
+        lost: snapped.lost,
+        ..matched(welded, edges, &beside, &marked)
     };
-    Meant { smooth: smooth(welded, edges, segments, &exact, &followed, &marked), marked, matched }
+    Meant { lines: lines.collect(), marked, matched }
 }
 
 /// Marks the edges that pass some segment closely with their ends and their middle.
@@ -76,29 +105,6 @@ fn mark_near(welded: &Welded, edges: &Edges, segments: Vec<[DVec3; 2]>, followed
         let reach = NEAR_SHARE * a.distance(b);
         *followed |= [a, b, 0.5 * (a + b)].iter().all(|&p| grid.nearest(p, reach).is_some());
     });
-}
-
-/// Which of the edges that lines follow are creases or borders.
-fn sharp(welded: &Welded, edges: &Edges, followed: &[bool]) -> Vec<bool> {
-    let normals = face_normals(&welded.positions, &welded.triangles);
-    let mut sharp = vec![false; followed.len()];
-    for Chain { edges: chain, .. } in chains(welded.positions.len(), edges, followed) {
-        let turn = |&edge: &u32| {
-            let cosine = crease_cosine(edges, &edges.edges[edge as usize], &normals);
-            cosine.map_or(180.0, |cosine| libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees())
-        };
-        let length = |&edge: &u32| {
-            let [a, b] = place(welded, edges.edges[edge as usize].ends);
-            a.distance(b)
-        };
-        let most = chain.iter().map(turn).fold(0.0, f64::max);
-        let turned: f64 = chain.iter().map(|edge| turn(edge) * length(edge)).sum();
-        let is_seam = most < SHARP_DEGREES && turned < SMOOTH_DEGREES * chain.iter().map(length).sum::<f64>();
-        for edge in chain {
-            sharp[edge as usize] = !is_seam && turn(&edge) >= SMOOTH_DEGREES;
-        }
-    }
-    sharp
 }
 
 /// Adds up what the lines follow.
@@ -114,29 +120,73 @@ fn matched(welded: &Welded, edges: &Edges, followed: &[bool], marked: &[bool]) -
     matched
 }
 
-/// Which segments run along edges that are followed but not marked. One that is no edge of the
-/// mesh is judged by the edge followed that passes its middle the nearest.
-fn smooth(
-    welded: &Welded,
-    edges: &Edges,
-    segments: &[[DVec3; 2]],
-    exact: &[Option<usize>],
-    followed: &[bool],
-    marked: &[bool],
-) -> Vec<bool> {
-    let of: Vec<usize> = (0..followed.len()).filter(|&index| followed[index]).collect();
-    let grid = SegmentGrid::new(of.iter().map(|&index| place(welded, edges.edges[index].ends)).collect());
-    let near = |[a, b]: [DVec3; 2]| {
-        let nearest = grid.nearest(0.5 * (a + b), a.distance(b))?;
-        let [from, to] = grid.segment(nearest.segment);
-        let close = nearest.distance <= NEAR_SHARE * from.distance(to);
-        close.then(|| of[nearest.segment as usize])
-    };
-    let edge = |(segment, exact): (&[DVec3; 2], &Option<usize>)| exact.or_else(|| near(*segment));
-    segments.iter().zip(exact).map(edge).map(|edge| edge.is_some_and(|edge| !marked[edge])).collect()
+/// The edges that lines follow, to be found by place.
+struct Followed {
+    edges: Vec<usize>,
+    grid: SegmentGrid,
+    longest: f64,
 }
 
-fn place(welded: &Welded, ends: [u32; 2]) -> [DVec3; 2] {
+impl Followed {
+    fn new(welded: &Welded, edges: &Edges, followed: &[bool]) -> Self {
+        let of: Vec<usize> = (0..followed.len()).filter(|&index| followed[index]).collect();
+        let segments: Vec<[DVec3; 2]> =
+            of.iter().map(|&index| place(welded, edges.edges[index].ends)).collect();
+        let longest = segments.iter().map(|[a, b]| a.distance(*b)).fold(0.0, f64::max);
+        Self { edges: of, grid: SegmentGrid::new(segments), longest }
+    }
+
+    /// The edge that runs through a place.
+    fn at(&self, place: DVec3) -> Option<usize> {
+        let nearest = self.grid.nearest(place, NEAR_SHARE * self.longest)?;
+        let [from, to] = self.grid.segment(nearest.segment);
+        let close = nearest.distance <= NEAR_SHARE * from.distance(to);
+        close.then(|| self.edges[nearest.segment as usize])
+    }
+}
+
+/// By how much faces turn at each edge, degrees.
+struct Turns(Vec<f64>);
+
+impl Turns {
+    fn of(welded: &Welded, edges: &Edges) -> Self {
+        let normals = face_normals(&welded.positions, &welded.triangles);
+        let turn = |edge| {
+            let cosine = crease_cosine(edges, edge, &normals);
+            cosine.map_or(180.0, |cosine| libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees())
+        };
+        Self(edges.edges.par_iter().map(turn).collect())
+    }
+
+    /// The edges that lines beside them may mean: creases, and those of borders.
+    fn creases(&self, edges: &Edges) -> Vec<bool> {
+        let crease = |(turn, edge): (&f64, &Edge)| *turn >= SHARP_DEGREES || edges.pair(edge).is_none();
+        self.0.iter().zip(&edges.edges).map(crease).collect()
+    }
+
+    /// Which of the edges that lines follow are creases or borders.
+    fn sharp(&self, welded: &Welded, edges: &Edges, followed: &[bool]) -> Vec<bool> {
+        let turn = |&edge: &u32| self.0[edge as usize];
+        let length = |&edge: &u32| {
+            let [a, b] = place(welded, edges.edges[edge as usize].ends);
+            a.distance(b)
+        };
+        let mut sharp = vec![false; followed.len()];
+        for Chain { edges: chain, .. } in chains(welded.positions.len(), edges, followed) {
+            let most = chain.iter().map(turn).fold(0.0, f64::max);
+            let turned: f64 = chain.iter().map(|edge| turn(edge) * length(edge)).sum();
+            let all = chain.iter().map(length).sum::<f64>();
+            let is_seam = most < SHARP_DEGREES && turned < SMOOTH_DEGREES * all;
+            for edge in chain {
+                sharp[edge as usize] = !is_seam && turn(&edge) >= SMOOTH_DEGREES;
+            }
+        }
+        sharp
+    }
+}
+
+/// The ends of an edge, model units.
+pub(super) fn place(welded: &Welded, ends: [u32; 2]) -> [DVec3; 2] {
     ends.map(|v| welded.positions[v as usize].as_dvec3())
 }
 
@@ -205,19 +255,17 @@ mod tests {
         let edges = Edges::of(&welded.triangles);
         for shift in [0.0, 1e-6, 1e-2] {
             let line = [DVec3::new(0.0, shift, 0.0), DVec3::new(1.0, shift, 0.0)];
-            let Meant { marked, matched, smooth } = mark(&welded, &edges, &[line]);
+            let Meant { marked, matched, lines } = mark(&welded, &edges, &[line], 0.0);
             let found: Vec<_> =
                 edges.edges.iter().zip(&marked).filter(|(_, m)| **m).map(|(e, _)| e.ends).collect();
             assert_eq!(found, [[0, 1]], "shift {shift}");
             assert!((matched.matched_length - 1.0).abs() < 1e-9 && matched.smooth_length == 0.0);
-            assert_eq!(smooth, [false]);
+            assert_eq!(lines, [line]);
         }
         let across = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 1.0, 0.0)];
-        let Meant { marked, matched, smooth } = mark(&welded, &edges, &[across]);
+        let Meant { marked, matched, lines } = mark(&welded, &edges, &[across], 0.0);
         assert!(marked.iter().all(|mark| !mark), "a line across a flat face bounds nothing");
-        assert!(smooth[0] && matched.smooth_length == matched.matched_length);
-        let beyond = [DVec3::new(0.3, 0.5, 0.0), DVec3::new(0.4, 0.5, 0.0)];
-        assert_eq!(mark(&welded, &edges, &[beyond]).smooth, [false], "along no edge, nothing is known");
+        assert!(lines.is_empty() && matched.smooth_length == matched.matched_length);
     }
 
     /// A strip of quads whose rows `[0, 1]`, `[1, 2]` turn by these angles, one a column, degrees.
@@ -243,7 +291,7 @@ mod tests {
 
     fn marked_of(degrees: &[f32]) -> usize {
         let (welded, lines) = fold(degrees);
-        mark(&welded, &Edges::of(&welded.triangles), &lines).matched.edges
+        mark(&welded, &Edges::of(&welded.triangles), &lines, 0.0).matched.edges
     }
 
     #[test]
@@ -252,5 +300,29 @@ mod tests {
         assert_eq!(marked_of(&[3.0, 3.0, 3.0, 6.0, 6.0, 3.0, 3.0, 3.0, 3.0]), 0, "a seam");
         let fading = marked_of(&[40.0, 30.0, 20.0, 10.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
         assert!((3..=4).contains(&fading), "{fading} edges of a crease that fades");
+    }
+
+    /// A line above the crease of a fold, from its one end to the other, in steps of a quarter.
+    fn beside(off: impl Fn(usize) -> f64) -> Vec<[DVec3; 2]> {
+        let at = |n: usize| DVec3::new(0.25 * n as f64, off(n), 0.0);
+        (0..32).map(|n| [at(n), at(n + 1)]).collect()
+    }
+
+    #[test]
+    fn lines_beside_a_crease_mean_it_and_lines_far_from_all_mean_nothing() {
+        let (welded, crease) = fold(&[40.0; 9]);
+        let edges = Edges::of(&welded.triangles);
+        let tremble = |n: usize| if n % 2 == 0 { 0.15 } else { -0.05 };
+        let twice: Vec<_> = beside(|_| 0.2).into_iter().chain(beside(|_| -0.2)).collect();
+        for (name, lines) in [("off", beside(|_| 0.2)), ("trembling", beside(tremble)), ("twice", twice)] {
+            let Meant { lines: meant, matched, .. } = mark(&welded, &edges, &lines, 0.5);
+            assert_eq!(meant, crease, "{name}");
+            assert!(matched.moved_length > 0.9 * matched.length && matched.lost.is_empty(), "{name}");
+            let Meant { matched, .. } = mark(&welded, &edges, &lines, 0.02);
+            assert_eq!((matched.edges, matched.lost.len()), (0, lines.len()), "{name}: out of reach");
+        }
+        let both: Vec<_> = crease.iter().copied().chain([[DVec3::Z, DVec3::Z + DVec3::X]]).collect();
+        let Meant { lines, matched, .. } = mark(&welded, &edges, &both, 0.5);
+        assert_eq!((lines, matched.lost, matched.moved_length), (crease, vec![8], 0.0));
     }
 }

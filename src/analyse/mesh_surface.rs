@@ -23,14 +23,19 @@ pub enum Features {
         /// The least length of all connected edges together, model units.
         shortest: f64,
     },
-    /// Those that these segments (model units) run along.
-    Given(Vec<[DVec3; 2]>),
+    /// Those that given lines mean.
+    Given {
+        /// Their segments, model units.
+        segments: Vec<[DVec3; 2]>,
+        /// How far they may lie off the edges they mean, model units.
+        beside: f64,
+    },
     /// None.
     None,
 }
 
 /// What was found on the way, for the report.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
     /// Feature edges: those matched to given lines as the mesh has them, those found as refined.
     pub feature_edges: usize,
@@ -74,17 +79,15 @@ fn marked(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Welded, Vec
 /// The lines that a mesh's surface is cut along, model units, each a segment of two points: its
 /// borders, where its faces do not join two by two, and its feature edges as they are found.
 ///
-/// Given segments are returned as they are, beside the borders, whether the mesh has an edge there
-/// or not; but for those along edges at which it is smooth.
+/// Given segments are returned beside the borders: as they are where they run along edges of the
+/// mesh, where they lie off these as the edges they mean; not where the mesh is smooth.
 #[must_use]
 pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<Vec<DVec3>> {
     let (welded, marked, given) = match features {
-        Features::Given(segments) => {
+        Features::Given { segments, beside } => {
             let welded = weld(mesh);
             let edges = Edges::of(&welded.triangles);
-            let smooth = given_lines::mark(&welded, &edges, segments).smooth;
-            let given = segments.iter().zip(smooth).filter(|(_, smooth)| !smooth).map(|(given, _)| *given);
-            let given = given.collect();
+            let given = given_lines::mark(&welded, &edges, segments, *beside).lines;
             (welded, vec![false; edges.edges.len()], given)
         }
         Features::Sharp { .. } | Features::None => {
@@ -108,8 +111,8 @@ pub(super) fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
             chains::drop_short(&welded.positions, &edges, *shortest, &mut marked);
             (marked, None)
         }
-        Features::Given(segments) => {
-            let Meant { marked, matched, .. } = given_lines::mark(welded, &edges, segments);
+        Features::Given { segments, beside } => {
+            let Meant { marked, matched, .. } = given_lines::mark(welded, &edges, segments, *beside);
             (marked, Some(matched))
         }
         Features::None => (vec![false; edges.edges.len()], None),

@@ -26,6 +26,7 @@ pub mod sets;
 pub mod sides;
 pub mod smooth;
 pub mod smoothed;
+mod snap;
 pub mod split;
 pub mod surface;
 pub mod thin;

@@ -59,6 +59,12 @@ impl SegmentGrid {
     /// The nearest place within `reach` of a point; ties go to the lesser index.
     #[must_use]
     pub fn nearest(&self, point: DVec3, reach: f64) -> Option<Nearest> {
+        self.nearest_of(point, reach, |_| true)
+    }
+
+    /// As [`Self::nearest`], of some segments alone.
+    #[must_use]
+    pub fn nearest_of(&self, point: DVec3, reach: f64, among: impl Fn(u32) -> bool) -> Option<Nearest> {
         let (low, high) = (cell_of(point - reach, self.cell), cell_of(point + reach, self.cell));
         let mut best: Option<Nearest> = None;
         for x in low.x..=high.x {
@@ -73,7 +79,7 @@ impl SegmentGrid {
                     let near = nearest_on(a, b, point);
                     let distance = near.distance(point);
                     let nearer = |n: &Nearest| (distance, segment) < (n.distance, n.segment);
-                    if distance <= reach && best.as_ref().is_none_or(nearer) {
+                    if distance <= reach && best.as_ref().is_none_or(nearer) && among(segment) {
                         best = Some(Nearest { segment, point: near, distance });
                     }
                 }

@@ -4,8 +4,9 @@
 
 use std::borrow::Cow;
 
-use super::noise::{Quieted, least_bound, noise, quieted};
+use super::noise::noise;
 use super::options::{Edges, Meaning, Options};
+use super::quiet::{Quieted, least_bound, quieted};
 use super::{MOST_PIECES, diagonal, features, piece_length};
 use crate::analyse::mesh_surface::Found;
 use crate::analyse::smooth::Fineness;
@@ -46,7 +47,7 @@ pub struct Meant<'a> {
 }
 
 /// What was made of an input.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Made {
     /// Nothing: it stands for itself.
     #[default]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use qsplat::analyse::mesh_surface::Found;
 use qsplat::bake::meant::Quiet;
 use qsplat::bake::{
     Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, Made, MaxError, Meaning, Normals, Options, Shapes,
@@ -164,6 +165,9 @@ impl Arguments {
         if let Some(path) = &self.report {
             format::write_file(path, report.json()?.as_bytes())?;
         }
+        if let Some(input) = report.input.as_ref().filter(|input| !input.lines_lost.is_empty()) {
+            notes.note(&lost_note(&self.edges, &input.lines_lost));
+        }
         let text = if quiet { String::new() } else { report.table() };
         // The bake refuses to break its bound; if it ever did, this is a failed check.
         Ok(Outcome { text, passed: report.error.within_budget })
@@ -208,7 +212,7 @@ impl Arguments {
             Edges::Given(lines) => Some(lines.segments() as u64),
             Edges::Auto | Edges::None => None,
         };
-        let matched = baked.features.matched.filter(|matched| matched.length > 0.0);
+        let matched = baked.features.matched.as_ref().filter(|matched| matched.length > 0.0);
         let share = |length: f64| length / baked.asset.diagonal;
         report::Input {
             path: self.input.display().to_string(),
@@ -232,6 +236,8 @@ impl Arguments {
             line_segments,
             lines_matched: matched.map(|matched| matched.matched_length / matched.length),
             lines_smooth: matched.map(|matched| matched.smooth_length / matched.length),
+            lines_moved: matched.map(|matched| matched.moved_length / matched.length),
+            lines_lost: lost(options, &baked.features),
         }
     }
 
@@ -258,6 +264,32 @@ impl Arguments {
             clips: name(self.clips.to_possible_value()),
         }
     }
+}
+
+/// Lines named in a note, at most.
+const MOST_NAMED: usize = 8;
+
+fn lost_note(path: &str, lost: &[u64]) -> String {
+    let named: Vec<String> = lost.iter().take(MOST_NAMED).map(u64::to_string).collect();
+    let more = if lost.len() > MOST_NAMED {
+        format!(" and {} more", lost.len() - MOST_NAMED)
+    } else {
+        String::new()
+    };
+    format!(
+        "{path}: {} of its lines (number {}{more}) lie beside no edge of the mesh and are left out; check that \
+         they belong to it, in the same units",
+        lost.len(),
+        named.join(", ")
+    )
+}
+
+/// The given lines, counted from 1, that mean no edge of the input.
+fn lost(options: &Options, features: &Found) -> Vec<u64> {
+    let (Edges::Given(lines), Some(matched)) = (&options.edges, &features.matched) else {
+        return Vec::new();
+    };
+    lines.whole(&matched.lost).into_iter().map(|line| line as u64 + 1).collect()
 }
 
 fn choice(baked: &Baked) -> report::Choice {

@@ -24,10 +24,39 @@ impl Polylines {
         self.lines.iter().map(|line| line.len().saturating_sub(1)).sum()
     }
 
+    /// The lines, all of whose segments are among some, ascending in the order of the lines.
+    #[must_use]
+    pub fn whole(&self, segments: &[u32]) -> Vec<usize> {
+        let (mut first, mut whole) = (0, Vec::new());
+        for (index, line) in self.lines.iter().enumerate() {
+            let end = first + line.len().saturating_sub(1);
+            let place = |segment: usize| segments.partition_point(|&other| (other as usize) < segment);
+            if end > first && place(end) - place(first) == end - first {
+                whole.push(index);
+            }
+            first = end;
+        }
+        whole
+    }
+
     /// Length of all lines, in input units.
     #[must_use]
     pub fn length(&self) -> f64 {
         let segments = self.lines.iter().flat_map(|line| line.windows(2));
         segments.map(|pair| pair[0].distance(pair[1])).fold(0.0, |sum, length| sum + length)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_whole_with_all_their_segments() {
+        let line = |points: usize| vec![DVec3::ZERO; points];
+        let lines = Polylines { lines: vec![line(3), line(1), line(2), line(4)] };
+        assert_eq!(lines.whole(&[0, 1, 2, 3, 5]), [0, 2]);
+        assert_eq!(lines.whole(&[1, 3, 4, 5]), [3]);
+        assert!(lines.whole(&[]).is_empty());
     }
 }

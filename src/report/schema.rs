@@ -48,6 +48,14 @@ pub struct Input {
     /// `None` without lines.
     #[serde(default)]
     pub lines_smooth: Option<f64>,
+    /// Share of the given lines' length that lies off the edges of the mesh that are meant, and was
+    /// moved onto them; `None` without lines.
+    #[serde(default)]
+    pub lines_moved: Option<f64>,
+    /// Given lines, by their number in the file, from 1, that lie beside no edge of the mesh and were
+    /// left out.
+    #[serde(default)]
+    pub lines_lost: Vec<u64>,
 }
 
 /// How far points were moved, fractions of the diagonal.

@@ -55,6 +55,8 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         line_segments: None,
         lines_matched: None,
         lines_smooth: None,
+        lines_moved: None,
+        lines_lost: Vec::new(),
     };
     let options = Options {
         max_error: 1e-3,

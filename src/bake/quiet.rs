@@ -1,0 +1,110 @@
+//! A cloud without its noise.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::patch::Patch;
+use crate::analyse::canonical::order;
+use crate::analyse::nearest::Search;
+use crate::error::Result;
+use crate::model::cloud::Cloud;
+
+/// A quadric fitted to `n` points scatters in its middle by the square root of this over `n`, a
+/// share of what the points do.
+const LEVERAGE: f64 = 4.0;
+
+/// Smoothed points scatter by this share of the error bound.
+const QUIET: f64 = 1.0 / 6.0;
+
+/// The fewest and the most points that one is smoothed with.
+const SMOOTHED_WITH: [usize; 2] = [32, 768];
+
+/// A point that would move by more than this many standard deviations of the noise is none of it and
+/// stays where it is: an outlier, or too far from its neighbours to be told.
+const FARTHEST: f64 = 6.0;
+
+/// The least error bound, model units, for which a cloud of this noise can be smoothed.
+#[must_use]
+pub fn least_bound(noise: f64) -> f64 {
+    // There the most points smooth to twice the scatter that is aimed at.
+    0.5 * noise / QUIET * (LEVERAGE / SMOOTHED_WITH[1] as f64).sqrt()
+}
+
+/// A cloud whose points are moved onto the quadrics fitted to the points around them.
+#[derive(Clone, Debug)]
+pub struct Quieted {
+    /// The cloud. Normals, if it had any, are those of the quadrics, on the side of the old ones.
+    pub cloud: Cloud,
+    /// Root mean square of the ways the points were moved, model units.
+    pub moved_rms: f64,
+    /// The longest, model units.
+    pub moved_max: f64,
+}
+
+/// A cloud without its noise, as far as an error bound asks for that (model units).
+///
+/// After Levin 1998 ("The approximation power of moving least-squares"), one step and with weights
+/// that are all the same.
+///
+/// # Errors
+/// [`crate::Error::Internal`] should the neighbour search not take the points.
+pub fn quieted(cloud: &Cloud, noise: f64, max_error: f64) -> Result<Quieted> {
+    let ratio = noise / (QUIET * max_error);
+    let count = ((LEVERAGE * ratio * ratio).ceil() as usize).clamp(SMOOTHED_WITH[0], SMOOTHED_WITH[1]);
+    // Along the curve, so that the order in the file does not matter, even between points equally far.
+    let order = order(&cloud.positions);
+    let positions: Vec<Vec3> = order.iter().map(|&n| cloud.positions[n as usize]).collect();
+    let search = Search::new(&positions)?;
+    let moved: Vec<(DVec3, DVec3)> = (0_u32..positions.len() as u32)
+        .into_par_iter()
+        .map(|n| {
+            let point = positions[n as usize];
+            let others = search.around(point, count).into_iter().filter(|&other| other != n);
+            let near = others.map(|other| positions[other as usize]);
+            let patch: Vec<Vec3> = std::iter::once(point).chain(near).collect();
+            Patch::of(&patch).foot(point)
+        })
+        .collect();
+    let mut quiet = Quieted { cloud: cloud.clone(), moved_rms: 0.0, moved_max: 0.0 };
+    let mut squares = 0.0;
+    for (&n, &(place, normal)) in order.iter().zip(&moved) {
+        let n = n as usize;
+        let way = cloud.positions[n].as_dvec3().distance(place);
+        if way > FARTHEST * noise {
+            continue;
+        }
+        squares += way * way;
+        quiet.moved_max = quiet.moved_max.max(way);
+        quiet.cloud.positions[n] = place.as_vec3();
+        if let Some(old) = quiet.cloud.normals.get_mut(n) {
+            let side = if old.as_dvec3().dot(normal) < 0.0 { -1.0 } else { 1.0 };
+            *old = (side * normal).as_vec3();
+        }
+    }
+    quiet.moved_rms = (squares / order.len().max(1) as f64).sqrt();
+    Ok(quiet)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::bake::noise::noise;
+    use crate::bake::scattered::sphere;
+
+    #[test]
+    fn smoothed_points_lie_on_the_sphere_and_outliers_stay() {
+        let mut cloud = sphere(20_000, 0.01);
+        cloud.positions[7] = Vec3::new(0.0, 0.0, 0.95);
+        let bound = 0.01;
+        let quiet = quieted(&cloud, noise(&cloud.positions).unwrap(), bound).unwrap();
+        assert_eq!(quiet.cloud.positions[7], cloud.positions[7]);
+        let rest = quiet.cloud.positions.iter().enumerate().filter(|&(n, _)| n != 7);
+        let off: Vec<f64> = rest.map(|(_, p)| p.as_dvec3().length() - 0.8).collect();
+        let rms = (off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64).sqrt();
+        assert!(rms < 1.5 * QUIET * bound, "{rms}");
+        assert!(off.iter().all(|off| off.abs() < bound));
+        assert!((0.8..1.2).contains(&(quiet.moved_rms / 0.01)), "{}", quiet.moved_rms);
+    }
+}
