@@ -268,6 +268,35 @@ fn edges_finds_the_lines_of_a_mesh_and_bake_takes_them() {
 }
 
 #[test]
+fn lines_beside_their_edges_are_moved_and_lines_that_mean_nothing_are_named() {
+    let (directory, file) = baked();
+    let exact = fs::read_to_string(fixture("capped-cylinder.edges.obj")).unwrap();
+    // A thousandth of the diagonal to the side, and one line more.
+    let moved = exact.lines().map(|line| match line.strip_prefix("v ") {
+        Some(place) => {
+            let mut place: Vec<f64> = place.split(' ').map(|number| number.parse().unwrap()).collect();
+            place[0] += 2e-3;
+            format!("v {} {} {}\n", place[0], place[1], place[2])
+        }
+        None => format!("{line}\n"),
+    });
+    let moved = moved.collect::<String>() + "v 5 5 5\nv 5 5 6\nl -2 -1\n";
+    let [edges, other, report] =
+        ["moved.obj", "moved.qsplat", "moved.json"].map(|name| text(&directory.path().join(name)));
+    fs::write(&edges, moved).unwrap();
+    let input = fixture("capped-cylinder.ply");
+    let output = qsplat(&["bake", &input, "--edges", &edges, "-o", &other, "--report", &report]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert!(fs::read(&other).unwrap() == fs::read(file).unwrap(), "as with the lines where they belong");
+    let number = exact.lines().filter(|line| line.starts_with('l')).count() + 1;
+    assert!(err(&output).contains(&format!("(number {number})")), "{}", err(&output));
+    let report: Report = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+    let input = report.input.unwrap();
+    assert_eq!(input.lines_lost, [number as u64]);
+    assert!(input.lines_moved.unwrap() > 0.5, "{:?}", input.lines_moved);
+}
+
+#[test]
 fn measure_knows_what_was_baked_in_the_place_of_facets() {
     let directory = tempfile::tempdir().unwrap();
     let [input, file] = ["coarse.obj", "coarse.qsplat"].map(|name| text(&directory.path().join(name)));
