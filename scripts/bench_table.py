@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Prints the table of benchmarks from what the harness kept: bench_table.py TARGET_FOLDER.
+"""Prints the table of benchmarks from what the harness kept: bench_table.py TARGET_FOLDER [README].
 
-Reads TARGET/criterion/STAGE/{stage,floor}/POINTS/new/estimates.json (times in nanoseconds) and
+With a README, also renews the lines between its marks. Reads TARGET/criterion/STAGE/{stage,floor}/POINTS/new/estimates.json (times in nanoseconds) and
 the notes that the benchmarks left in TARGET/tmp/bench-notes.json.
 """
 
@@ -12,6 +12,9 @@ import pathlib
 import sys
 
 POINTS = [100_000, 1_000_000, 4_000_000]
+
+# The README's lines between these are made here.
+MARKS = ("<!-- scripts/bench -->\n", "<!-- scripts/bench ends -->\n")
 
 # Stage, what it is, what its floor is.
 PASS = "neighbour pass"
@@ -44,11 +47,16 @@ def seconds(value):
     return f"{value * 1e6:.3g} µs"
 
 
+def ratio(stage, floor):
+    times = stage / floor
+    return f"{times:.3g}" if times < 1000 else f"{times:,.0f}"
+
+
 def cell(times):
     stage, floor = times
     if stage is None or floor is None:
         return "–"
-    return f"{seconds(stage)}, **{stage / floor:.3g}**"
+    return f"{seconds(stage)}, **{ratio(stage, floor)}**"
 
 
 def growth(times):
@@ -58,6 +66,31 @@ def growth(times):
         return "–"
     (few, first), (many, last) = found[0], found[-1]
     return f"{math.log(last / first) / math.log(many / few):.2f}"
+
+
+def measured(folder, stage):
+    """Seconds of a stage and of its floor, for each number of points."""
+    return [tuple(median(folder, stage, which, points) for which in ("stage", "floor")) for points in POINTS]
+
+
+def ratios(folder):
+    """The table without seconds."""
+    lines = [
+        "| time over that of the floor | floor | 100 thousand points | 1 million | 4 million |",
+        "|---|---|---|---|---|",
+    ]
+    for stage, what, floor in STAGES:
+        pairs = [pair if None not in pair else None for pair in measured(folder, stage)]
+        cells = " | ".join("–" if pair is None else ratio(*pair) for pair in pairs)
+        lines.append(f"| {stage}: {what} | {floor} | {cells} |")
+    return "".join(line + "\n" for line in lines)
+
+
+def renew(readme, table):
+    """Puts a table between a README's marks."""
+    before, rest = readme.read_text().split(MARKS[0])
+    after = rest.split(MARKS[1])[1]
+    readme.write_text(before + MARKS[0] + "\n" + table + "\n" + MARKS[1] + after)
 
 
 def each(notes, stage, say):
@@ -82,10 +115,7 @@ def main():
     print("| stage | floor | 100 thousand | 1 million | 4 million | growth |")
     print("|---|---|---|---|---|---|")
     for stage, what, floor in STAGES:
-        times = [
-            (median(folder, stage, "stage", points), median(folder, stage, "floor", points))
-            for points in POINTS
-        ]
+        times = measured(folder, stage)
         cells = " | ".join(cell(pair) for pair in times)
         print(f"| **{stage}**: {what} | {floor} | {cells} | {growth(times)} |")
     print(
@@ -107,6 +137,8 @@ def main():
             print(f"- {title}: {each(notes, stage, say)}.")
     if "adapter" in machine:
         print(f"- Graphics adapter: {machine['adapter']}.")
+    for readme in sys.argv[2:]:
+        renew(pathlib.Path(readme), ratios(folder))
 
 
 if __name__ == "__main__":

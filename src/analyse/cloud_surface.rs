@@ -41,6 +41,7 @@ pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: &[Vec<DVec3>]) 
     let mut found = normals(&points, &nearest, source)?;
     let network = Network::new(lines, &search, &points.positions, &spacing);
     drop(search);
+    let lost = segments_of(lines, &network.far);
     let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut found));
     let sites =
         Sites { positions: &points.positions, normals: &found.normals, spacing: &spacing, nearest: &nearest };
@@ -62,7 +63,7 @@ pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: &[Vec<DVec3>]) 
     let place = |v: &u32| outlier[points.place[*v as usize] as usize];
     let left_out = (0..points.place.len() as u32).filter(place).collect();
     let surface = assemble(&points, &found.normals, &joined, &outlier, cut.as_ref(), joins);
-    Ok(CloudSurface { surface, left_out, matched: (!lines.is_empty()).then(|| matched(lines, cut.as_ref())) })
+    Ok(CloudSurface { surface, left_out, matched: (!lines.is_empty()).then(|| matched(lines, cut.as_ref(), lost)) })
 }
 
 /// Cuts the cloud along a network; estimated normals beside it are estimated again.
@@ -83,10 +84,24 @@ fn cut(
     cut
 }
 
-fn matched(lines: &[Vec<DVec3>], cut: Option<&LineCut>) -> Matched {
+/// The segments of some lines, counted over all.
+fn segments_of(lines: &[Vec<DVec3>], some: &[u32]) -> Vec<u32> {
+    let mut next = 0;
+    let ranges: Vec<_> = lines
+        .iter()
+        .map(|line| {
+            let first = next;
+            next += line.len().saturating_sub(1) as u32;
+            first..next
+        })
+        .collect();
+    some.iter().flat_map(|&line| ranges[line as usize].clone()).collect()
+}
+
+fn matched(lines: &[Vec<DVec3>], cut: Option<&LineCut>, lost: Vec<u32>) -> Matched {
     let length = lines.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
     let (edges, matched_length) = cut.map_or((0, 0.0), LineCut::found);
-    Matched { edges, length, matched_length: matched_length.min(length), ..Matched::default() }
+    Matched { edges, length, matched_length: matched_length.min(length), lost, ..Matched::default() }
 }
 
 /// The surface over all points that are no outliers, and those on lines.

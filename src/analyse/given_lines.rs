@@ -34,7 +34,8 @@ pub struct Matched {
     pub smooth_length: f64,
     /// Length of the given lines that pass beside the edges they mean, and were moved onto them.
     pub moved_length: f64,
-    /// Given segments, ascending, that lie beside no edge at all: they mean nothing.
+    /// Given segments, ascending, that lie beside no edge of a mesh, or on lines far from a cloud:
+    /// they mean nothing.
     pub lost: Vec<u32>,
 }
 

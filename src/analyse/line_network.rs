@@ -33,6 +33,8 @@ pub struct Network {
     pub segments: Vec<[u32; 2]>,
     /// For each node, its segments.
     pub at_node: Rows,
+    /// Lines, by their place among those given, no part of which comes near the cloud.
+    pub far: Vec<u32>,
 }
 
 impl Network {
@@ -44,13 +46,17 @@ impl Network {
             let spacing = f64::from(spacing[point]);
             (spacing > 0.0).then(|| (positions[point].as_dvec3().distance(place), spacing))
         };
-        let mut pieces = Vec::new();
-        for line in lines {
+        let (mut pieces, mut far) = (Vec::new(), Vec::new());
+        for (index, line) in (0_u32..).zip(lines) {
+            let before = pieces.len();
             for side in thinned(line, &near).windows(2) {
                 halve(side[0], side[1], HALVINGS, &near, &mut pieces);
             }
+            if pieces.len() == before {
+                far.push(index);
+            }
         }
-        Self::of_pieces(&pieces)
+        Self { far, ..Self::of_pieces(&pieces) }
     }
 
     fn of_pieces(pieces: &[[Vec3; 2]]) -> Self {
@@ -71,7 +77,7 @@ impl Network {
         segments.dedup();
         let at_node =
             segments.iter().zip(0_u32..).flat_map(|(ends, segment)| ends.map(|end| (end, segment))).collect();
-        Self { at_node: Rows::from_pairs(nodes.len(), at_node), nodes, segments }
+        Self { at_node: Rows::from_pairs(nodes.len(), at_node), nodes, segments, far: Vec::new() }
     }
 
     /// A segment's ends.

@@ -23,8 +23,9 @@ pub(super) struct Arguments {
     /// A mesh or cloud: PLY, OBJ, glTF, GLB
     #[arg(value_name = "INPUT")]
     input: PathBuf,
-    /// Feature lines: an OBJ with `l` records or a PLY with an `edge` element; `auto` finds them
-    /// on a mesh by dihedral angle and border and takes none for a cloud
+    /// Feature lines: an OBJ with `l` records or a PLY with an `edge` element, moved onto the edges
+    /// of a mesh where they lie off them by up to 0.5 % of the diagonal; `auto` finds them on a mesh
+    /// by dihedral angle and border and takes none for a cloud
     #[arg(long, value_name = "FILE|auto|none", default_value = "auto")]
     edges: String,
     /// Dihedral angle from which `--edges auto` takes a mesh edge for a feature edge, degrees
@@ -277,8 +278,8 @@ fn lost_note(path: &str, lost: &[u64]) -> String {
         String::new()
     };
     format!(
-        "{path}: {} of its lines (number {}{more}) lie beside no edge of the mesh and are left out; check that \
-         they belong to it, in the same units",
+        "{path}: left out what lies beside no edge of the input, {} of its lines (number {}{more}); check \
+         that they belong to it, in the same units",
         lost.len(),
         named.join(", ")
     )

@@ -52,8 +52,8 @@ pub struct Input {
     /// moved onto them; `None` without lines.
     #[serde(default)]
     pub lines_moved: Option<f64>,
-    /// Given lines, by their number in the file, from 1, that lie beside no edge of the mesh and were
-    /// left out.
+    /// Given lines, by their number in the file, from 1, that lie beside no edge of the mesh, or far
+    /// from the cloud, and were left out.
     #[serde(default)]
     pub lines_lost: Vec<u64>,
 }
