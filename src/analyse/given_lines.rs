@@ -313,7 +313,7 @@ mod tests {
     fn lines_beside_a_crease_mean_it_and_lines_far_from_all_mean_nothing() {
         let (welded, crease) = fold(&[40.0; 9]);
         let edges = Edges::of(&welded.triangles);
-        let tremble = |n: usize| if n % 2 == 0 { 0.15 } else { -0.05 };
+        let tremble = |n: usize| if n % 2 == 0 { 0.25 } else { 0.1 };
         let twice: Vec<_> = beside(|_| 0.2).into_iter().chain(beside(|_| -0.2)).collect();
         for (name, lines) in [("off", beside(|_| 0.2)), ("trembling", beside(tremble)), ("twice", twice)] {
             let Meant { lines: meant, matched, .. } = mark(&welded, &edges, &lines, 0.5);
