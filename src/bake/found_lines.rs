@@ -27,7 +27,7 @@ pub fn found_lines(input: &Input, options: &Options) -> Result<Polylines> {
     let found = feature_lines(input, &Edges::Auto, options.edge_angle, max_error).unwrap_or_default();
     let lines = match input {
         Input::Mesh(_) => cornered(&joined(&found)).iter().map(|line| straightened(line)).collect(),
-        Input::Cloud(_) => found,
+        Input::Cloud(_) => joined(&found),
     };
     let to_input = |line: Vec<DVec3>| line.into_iter().map(|place| frame.to_input(place)).collect();
     Ok(Polylines { lines: lines.into_iter().map(to_input).collect() })

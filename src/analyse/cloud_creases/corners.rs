@@ -17,8 +17,11 @@ const BACK: f64 = 0.6;
 /// How far from a corner a line that is carried on may pass, in its size.
 const MISS: f64 = 0.4;
 
-/// Lines that turn by less than this at their ends' meeting (sine of 15°) are one, over a gap.
-const STRAIGHT: f64 = 0.26;
+/// Ends face each other over a gap in one line if both lead to the other within this cosine (37°).
+const FACING: f64 = 0.8;
+
+/// Ends that run the same way or against each other (sine of 15°) lead to no corner.
+const PARALLEL: f64 = 0.26;
 
 /// The way from an end is taken over this many of the line's places.
 const TANGENT: usize = 4;
@@ -64,6 +67,15 @@ impl End {
         })
     }
 
+    /// Whether this end and another are on both sides of a gap.
+    fn faces(&self, other: &Self) -> bool {
+        let way = other.place - self.place;
+        let length = way.length();
+        let lead = way.dot(self.outward).min(-way.dot(other.outward));
+        let apart = self.line != other.line || self.places >= LOOP;
+        apart && length > 0.0 && lead >= FACING * length && length <= AHEAD * self.size.min(other.size)
+    }
+
     /// Whether a place is where the line may go on to.
     fn reaches(&self, place: DVec3) -> bool {
         let way = place - self.place;
@@ -91,15 +103,17 @@ fn search(places: impl Iterator<Item = DVec3>) -> Result<Option<Search>> {
 /// As [`Search::new`].
 pub(super) fn join(lines: &mut [Line]) -> Result<Vec<[usize; 2]>> {
     let mut met = vec![[0; 2]; lines.len()];
-    let found = ends(lines);
-    for (corner, ends) in corners(&found)? {
-        for &n in &ends {
-            let end = &found[n];
-            extend(&mut lines[end.line], end, corner);
-            met[end.line][usize::from(end.last)] = ends.len();
+    let mut loose = ends(lines);
+    for meeting in [gaps, corners] {
+        for (place, ends) in meeting(&loose)? {
+            for &n in &ends {
+                let end = &loose[n];
+                extend(&mut lines[end.line], end, place);
+                met[end.line][usize::from(end.last)] = ends.len();
+            }
         }
+        loose.retain(|end| met[end.line][usize::from(end.last)] == 0);
     }
-    let loose: Vec<End> = found.into_iter().filter(|end| met[end.line][usize::from(end.last)] == 0).collect();
     for (end, place) in run_into(lines, &loose)? {
         extend(&mut lines[end.line], &end, place);
         met[end.line][usize::from(end.last)] = 2;
@@ -119,6 +133,19 @@ fn extend(line: &mut Line, end: &End, place: DVec3) {
         line.places.remove(last);
     }
     if end.last { line.places.push(place) } else { line.places.insert(0, place) }
+}
+
+/// Where the two ends at a gap meet: of all that face each other the nearest, if that is mutual.
+fn gaps(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
+    let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
+    let facing = |n: usize| {
+        let near = search.around(ends[n].place.as_vec3(), LOOKED_AT).into_iter().map(|other| other as usize);
+        near.filter(|&other| other != n).find(|&other| ends[n].faces(&ends[other]))
+    };
+    let facing: Vec<Option<usize>> = (0..ends.len()).map(facing).collect();
+    let mutual = facing.iter().enumerate().filter_map(|(n, &other)| Some((n, other?)));
+    let mutual = mutual.filter(|&(n, other)| n < other && facing[other] == Some(n));
+    Ok(mutual.map(|(n, other)| (0.5 * (ends[n].place + ends[other].place), vec![n, other])).collect())
 }
 
 /// Where ends meet, and which do.
@@ -142,17 +169,14 @@ fn corners(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
 fn meet(a: &End, b: &End) -> bool {
     let cross = a.outward.cross(b.outward);
     let between = b.place - a.place;
-    let place = if cross.length() > STRAIGHT {
-        // Where the two lines pass each other.
-        let square = cross.length_squared();
-        let (s, t) =
-            (between.cross(b.outward).dot(cross) / square, between.cross(a.outward).dot(cross) / square);
-        0.5 * (a.place + s * a.outward + b.place + t * b.outward)
-    } else if a.outward.dot(b.outward) < 0.0 && between.dot(a.outward) > 0.0 {
-        0.5 * (a.place + b.place)
-    } else {
+    if cross.length() <= PARALLEL {
         return false;
-    };
+    }
+    // Where the two lines pass each other.
+    let square = cross.length_squared();
+    let along = |outward: DVec3| between.cross(outward).dot(cross) / square;
+    let (s, t) = (along(b.outward), along(a.outward));
+    let place = 0.5 * (a.place + s * a.outward + b.place + t * b.outward);
     (a.line != b.line || a.places >= LOOP) && a.reaches(place) && b.reaches(place)
 }
 

@@ -6,7 +6,7 @@ use super::links::Chain;
 
 /// Of a crease's samples at least this share turn by the whole angle asked for; the others carry it
 /// on (hysteresis, after Canny 1986).
-const SHARP_SHARE: f64 = 0.3;
+const SHARP_SHARE: f64 = 0.5;
 
 /// A line of fewer samples is none.
 const FEWEST: usize = 3;

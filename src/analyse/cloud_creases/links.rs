@@ -12,7 +12,7 @@ use crate::analyse::surface::NONE;
 use crate::error::Result;
 
 /// The next sample lies within this share of a sample's size...
-const REACH: f64 = 1.0;
+const REACH: f64 = 1.25;
 
 /// ... and in its direction (cosine of 37°), as it lies in that of the next.
 const AHEAD: f64 = 0.8;
@@ -29,7 +29,7 @@ pub(super) struct Chain {
     pub(super) closed: bool,
 }
 
-/// Lines of samples, each linked to the next on either side where that is mutual.
+/// Lines of samples, each linked to at most one on either side: the nearest pairs first.
 ///
 /// # Errors
 /// As [`Search::new`].
@@ -38,24 +38,25 @@ pub(super) fn chains(samples: &[Sample]) -> Result<Vec<Chain>> {
         return Ok(Vec::new());
     }
     let search = search(samples)?;
-    let next: Vec<[u32; 2]> = (0..samples.len() as u32)
-        .into_par_iter()
-        .map(|n| [1.0, -1.0].map(|sign| next(samples, &search, n, sign)))
-        .collect();
-    let linked = |a: u32, side: usize| {
-        let b = next[a as usize][side];
-        let mutual = b != NONE && next[b as usize].contains(&a);
-        // Two that are each other's next on both sides are no loop.
-        (mutual && next[a as usize] != [b; 2]).then_some(b)
-    };
+    let near = (0..samples.len() as u32).into_par_iter().flat_map_iter(|n| pairs(samples, &search, n));
+    let mut pairs: Vec<Pair> = near.collect();
+    pairs.sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost).then(a.ends.cmp(&b.ends)));
+    let mut next = vec![[NONE; 2]; samples.len()];
+    for Pair { ends: [(a, side_a), (b, side_b)], .. } in pairs {
+        let free = next[a as usize][side_a] == NONE && next[b as usize][side_b] == NONE;
+        if free && !next[a as usize].contains(&b) {
+            next[a as usize][side_a] = b;
+            next[b as usize][side_b] = a;
+        }
+    }
     let mut unused: BTreeSet<u32> = (0..samples.len() as u32).collect();
     let mut found = Vec::new();
     while let Some(start) = unused.pop_first() {
         let mut line = vec![start];
-        let closed = walk(start, 0, &linked, &next, &mut unused, &mut line);
+        let closed = walk(start, 0, &next, &mut unused, &mut line);
         if !closed {
             line.reverse();
-            walk(start, 1, &linked, &next, &mut unused, &mut line);
+            walk(start, 1, &next, &mut unused, &mut line);
         }
         found.push(Chain { samples: line.into_iter().map(|n| samples[n as usize]).collect(), closed });
     }
@@ -66,38 +67,50 @@ pub(super) fn chains(samples: &[Sample]) -> Result<Vec<Chain>> {
 fn walk(
     start: u32,
     mut side: usize,
-    linked: &impl Fn(u32, usize) -> Option<u32>,
     next: &[[u32; 2]],
     unused: &mut BTreeSet<u32>,
     line: &mut Vec<u32>,
 ) -> bool {
     let mut at = start;
-    while let Some(onward) = linked(at, side) {
-        if !unused.remove(&onward) {
-            return onward == start && line.len() > 2;
+    loop {
+        let onward = next[at as usize][side];
+        if onward == NONE || !unused.remove(&onward) {
+            return onward == start;
         }
         line.push(onward);
         // On by the side that does not lead back.
         side = usize::from(next[onward as usize][0] == at);
         at = onward;
     }
-    false
 }
 
-/// The sample that follows one in its direction, or against it; or [`NONE`].
-fn next(samples: &[Sample], search: &Search, n: u32, sign: f64) -> u32 {
+/// Two samples that may follow each other.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    /// Their distance, more where the way turns.
+    cost: f64,
+    /// Each with its side that faces the other: 0 in its direction, 1 against it.
+    ends: [(u32, usize); 2],
+}
+
+/// Pairs of a sample and those of greater number that may follow it on either side.
+fn pairs(samples: &[Sample], search: &Search, n: u32) -> Vec<Pair> {
     let sample = &samples[n as usize];
-    let cost = |other: u32| {
-        let other = &samples[other as usize];
+    let pair = |number: u32| {
+        let other = &samples[number as usize];
         let way: DVec3 = other.place - sample.place;
         let length = way.length();
-        let ahead = sign * way.dot(sample.along);
-        let follows = ahead >= AHEAD * length && way.dot(other.along).abs() >= AHEAD * length;
-        (follows && length > 0.0 && length <= REACH * sample.size && alike(sample, other))
-            .then(|| length * length / ahead)
+        let [here, there] = [way.dot(sample.along), -way.dot(other.along)];
+        let follows = here.abs().min(there.abs()) >= AHEAD * length;
+        let near = length > 0.0 && length <= REACH * sample.size;
+        let ends = [(n, usize::from(here < 0.0)), (number, usize::from(there < 0.0))];
+        let cost = length * length * length / (here * there).abs();
+        (follows && near && alike(sample, other)).then_some(Pair { cost, ends })
     };
-    let around = search.around(sample.place.as_vec3(), LOOKED_AT);
-    let costs =
-        around.into_iter().filter(|&other| other != n).filter_map(|other| Some((cost(other)?, other)));
-    costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map_or(NONE, |(_, other)| other)
+    search
+        .around(sample.place.as_vec3(), LOOKED_AT)
+        .into_iter()
+        .filter(|&other| other > n)
+        .filter_map(pair)
+        .collect()
 }

@@ -50,7 +50,7 @@ const WEAK_SHARE: f64 = 0.75;
 
 /// A line with loose ends is at least this many neighbourhoods long: one with none, with one, with
 /// two.
-const LENGTHS: [f64; 3] = [0.3, 2.0, 3.0];
+const LENGTHS: [f64; 3] = [0.5, 3.0, 5.0];
 
 /// Lines along which the surface of a cloud is creased, model units; a closed one repeats its first
 /// place at the end.

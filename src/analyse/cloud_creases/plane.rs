@@ -22,7 +22,8 @@ pub(super) struct Plane {
     pub(super) width: f64,
 }
 
-/// A spread whose eigenvalues differ by less than this share of their mean has no directions.
+/// A spread whose eigenvalues differ by less than this share of their mean has no directions; nor has
+/// one whose two least do.
 const ROUND: f64 = 1e-9;
 
 impl Moments {
@@ -64,8 +65,7 @@ impl Moments {
         let mean = d.element_sum() / 3.0;
         let off = d - mean;
         let radius = ((off.length_squared() + 2.0 * o.length_squared()) / 6.0).sqrt();
-        let directed = radius > ROUND * mean;
-        if !directed {
+        if radius <= ROUND * mean {
             return None;
         }
         let half = 0.5 * matrix(off / radius, o / radius).determinant();
@@ -78,7 +78,9 @@ impl Moments {
         let longest = across
             .into_iter()
             .fold(DVec3::ZERO, |a, b| if b.length_squared() > a.length_squared() { b } else { a });
-        let normal = (longest / (radius * radius)).try_normalize()?;
+        // Its length is the product of what the other eigenvalues are greater.
+        let longest = longest / (radius * radius);
+        let normal = longest.try_normalize().filter(|_| longest.length() > ROUND)?;
         Some(Plane { middle: self.sum / self.count, normal, width: 3.0 * mean - most - least })
     }
 }

@@ -30,6 +30,10 @@ pub(super) struct Sample {
 /// eight spacings by 0.1.
 const ROUGH: f64 = 0.1;
 
+/// Of the variance that noise has, what few points show of it, at least: they fit their plane better
+/// than they do the surface.
+const ROUGH_NOISE: f64 = 0.7;
+
 /// Points looked at around one: a few spacings in all directions.
 const FEWEST: f64 = 32.0;
 
@@ -38,7 +42,7 @@ const MOST: f64 = 160.0;
 
 /// The neighbourhood's radius in standard deviations of the noise, so that the slopes of half of it
 /// are known to a few degrees.
-const ABOVE_NOISE: f64 = 10.0;
+const ABOVE_NOISE: f64 = 13.0;
 
 /// Noise of more than this many spacings drowns what few points show.
 const DROWNED: f64 = 1.0;
@@ -63,9 +67,17 @@ const SIDE_WIDTH: f64 = 0.15;
 /// A crease is seen by points within this share of the neighbourhood's radius.
 const BESIDE: f64 = 0.35;
 
-/// How much better than a quadric a hinge must explain the points: the excess of the quadric's sum
-/// of squares over the hinge's mean square (a statistic of F).
+/// How much better than a quadric a hinge must explain the points, where both miss them by noise
+/// alone: the excess of the quadric's sum of squares over the hinge's mean square (a statistic of F).
 const BETTER: f64 = 16.0;
+
+/// The same where the hinge misses them by more than noise: the ratio of the excesses over it.
+const BETTER_SHAPED: f64 = 3.0;
+
+/// Two half planes that miss the points by more than this share of the spacing, and by more than
+/// their noise, are not the surface.
+const LOOSE: f64 = 0.15;
+const LOOSE_NOISE: f64 = 1.5;
 
 /// A quadric that misses the points by no more than this share of the spacing is as good as a hinge.
 const EXACT: f64 = 0.03;
@@ -110,7 +122,7 @@ impl Points<'_> {
         let here = self.positions[n].as_dvec3();
         let offset = |other: u32| (self.positions[other as usize].as_dvec3() - here) / spacing;
         let moments = Moments::of(std::iter::once(DVec3::ZERO).chain(listed(&self.nearest[n]).map(offset)));
-        moments.thickness() > ROUGH * ROUGH + noise * noise
+        moments.thickness() > ROUGH * ROUGH + ROUGH_NOISE * noise * noise
     }
 
     /// How many points are looked at where they lie so far apart.
@@ -131,12 +143,12 @@ impl Points<'_> {
         let cutoff = CUTOFF.max(STRAY * noise);
         let normal = Moments::of(points.iter().copied()).plane()?.normal;
         let smooth = bowl::scatter(&points, normal, radius, cutoff).unwrap_or(cutoff * cutoff);
-        if smooth < EXACT * EXACT + noise * noise {
+        if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
             return None;
         }
         let hinge = Hinge::fit(&points, normal, cutoff)?;
-        let better = (smooth - hinge.scatter - EXACT * EXACT) * points.len() as f64;
-        let sound = better > BETTER * hinge.scatter && is_sound(&hinge, points.len(), radius);
+        let sound =
+            is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
         let turned = (FOLDED..turn).contains(&hinge.turn());
         (sound && turned).then(|| Sample {
             place: here + spacing * hinge.foot,
@@ -146,6 +158,15 @@ impl Points<'_> {
             size: radius * spacing,
         })
     }
+}
+
+/// Whether the mean square by which a hinge misses so many points is so much less than that of a
+/// quadric that there is a crease; in squares of the spacing, as `noise` is in spacings.
+fn is_better(quadric: f64, hinge: f64, noise: f64, points: usize) -> bool {
+    let better = quadric - hinge - EXACT * EXACT;
+    hinge < LOOSE * LOOSE + LOOSE_NOISE * noise * noise
+        && better * points as f64 > BETTER * hinge
+        && better > BETTER_SHAPED * (hinge - noise * noise)
 }
 
 /// Whether a hinge among so many points has enough of them on both sides, and lies beside their
