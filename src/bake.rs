@@ -15,7 +15,8 @@ use std::time::Instant;
 use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 
-use crate::analyse::cloud_surface::cloud_surface;
+use crate::analyse::cloud_creases::{Sought, cloud_creases};
+use crate::analyse::cloud_surface::{Lines, cloud_surface};
 use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
 use crate::analyse::surface::Surface;
 use crate::analyse::thin::{Reach, thin};
@@ -26,6 +27,7 @@ pub use crate::fit::pose::Shapes;
 use crate::fit::pose::misfit;
 use crate::ingest::Input;
 use crate::model::asset::{Accuracy, Asset};
+use crate::model::cloud::Cloud;
 use crate::model::frame::Frame;
 use crate::model::mesh::Mesh;
 use crate::model::polyline::Polylines;
@@ -236,8 +238,8 @@ struct Analysed {
     left_out: Vec<u32>,
 }
 
-/// Lines found on a mesh that are shorter than this many error bounds, taken together with all
-/// that they meet, are left out.
+/// Lines found that are shorter than this many error bounds, taken together with all that they
+/// meet, are left out.
 const SHORTEST_LINE: f64 = 8.0;
 
 /// Given lines that lie off the edges they mean by at most this share of the diagonal are moved
@@ -257,13 +259,16 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             Ok(Analysed { surface, features: Found { matched, ..found }, ..Analysed::default() })
         }
         Input::Cloud(cloud) => {
-            let lines = match meant.edges.as_ref() {
+            let given = match meant.edges.as_ref() {
                 Edges::Given(lines) => model_lines(lines, &cloud.frame),
                 Edges::Auto | Edges::None => Vec::new(),
             };
-            let found = cloud_surface(cloud, options.normals.into(), &lines)?;
-            let feature_edges = found.matched.as_ref().map_or(0, |matched| matched.edges);
-            let features = Found { feature_edges, matched: found.matched };
+            let lines = match meant.edges.as_ref() {
+                Edges::Auto => Lines::Found(sought(cloud, options.edge_angle, max_error)),
+                Edges::Given(_) | Edges::None => Lines::Given(&given),
+            };
+            let found = cloud_surface(cloud, options.normals.into(), lines)?;
+            let features = Found { feature_edges: found.edges, matched: found.matched };
             let reach = Reach { radius: THIN_RADIUS * max_error, offset: THIN_OFFSET * max_error };
             Ok(Analysed { surface: thin(found.surface, reach), features, left_out: found.left_out })
         }
@@ -282,14 +287,20 @@ fn features(mesh: &Mesh, edges: &Edges, edge_angle: f64, max_error: f64) -> Feat
     }
 }
 
+/// Which creases of a cloud are feature lines.
+fn sought(cloud: &Cloud, edge_angle: f64, max_error: f64) -> Sought {
+    // Where no surface shows, noise is all there is.
+    let noise = noise::noise(&cloud.positions).unwrap_or(f64::INFINITY);
+    Sought { degrees: edge_angle, noise, shortest: SHORTEST_LINE * max_error }
+}
+
 /// The lines along which a bake with these options cuts its splats, model units: feature lines,
 /// and a mesh's open borders, where splats are cut as well.
 ///
-/// Lines come as segments of two points, given ones whether the input has an edge there or not,
-/// but for those along which a mesh is smooth. `edge_angle` is in degrees; `max_error`, in model
-/// units, decides which
-/// found lines are too short to count. `None` where there are no lines: for a cloud without given
-/// ones, for a smooth closed mesh, and for [`Edges::None`].
+/// A mesh's lines come as segments of two points, given ones whether the input has an edge there or
+/// not, but for those along which a mesh is smooth. `edge_angle` is in degrees; `max_error`, in model
+/// units, decides which found lines are too short to count. `None` where there are no lines: for a
+/// smooth cloud, for a smooth closed mesh, and for [`Edges::None`].
 #[must_use]
 pub fn feature_lines(
     input: &Input,
@@ -304,7 +315,10 @@ pub fn feature_lines(
             cut_lines(mesh, &features(mesh, edges, edge_angle, max_error), &making)
         }
         (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
-        (Input::Cloud(_), Edges::Auto) => Vec::new(),
+        (Input::Cloud(cloud), Edges::Auto) => {
+            // A search that does not take the points fails the bake: it has no lines to tell of.
+            cloud_creases(cloud, &sought(cloud, edge_angle, max_error)).unwrap_or_default()
+        }
     };
     (!lines.is_empty()).then_some(lines)
 }

@@ -1,8 +1,9 @@
 //! From a point cloud to its surface: sort and merge, find neighbours, give normals, cut
-//! along feature lines, join.
+//! along feature lines, given or found, join.
 
 use glam::{DVec3, Vec3};
 
+use super::cloud_creases::{Sought, found};
 use super::cloud_graph::{Joined, Sites};
 use super::cloud_normals::{NormalSource, Normals, normals, parted};
 use super::distinct::{Distinct, distinct};
@@ -22,29 +23,50 @@ pub struct CloudSurface {
     pub surface: Surface,
     /// Points of the cloud that belong to no surface, ascending: outliers.
     pub left_out: Vec<u32>,
+    /// Segments of the lines, given or found and resampled, at which a sheet of the surface ends.
+    pub edges: usize,
     /// What became of the lines, if any were given; `edges` counts their samples' segments.
     pub matched: Option<Matched>,
 }
 
-/// The surface of a cloud, cut along feature lines (model units).
+/// Where the feature lines of a cloud come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Lines<'a> {
+    /// Given, model units; perhaps none.
+    Given(&'a [Vec<DVec3>]),
+    /// Its creases, so far as they are these.
+    Found(Sought),
+}
+
+/// The surface of a cloud, cut along feature lines.
 ///
 /// Neither the order of points and lines nor repeated points change anything but `left_out`.
 /// Lines far from the cloud, and lines around which the points show no sheets, cut nothing.
 ///
 /// # Errors
 /// [`crate::Error::Usage`] where normals are to be kept and none is sound.
-pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: &[Vec<DVec3>]) -> Result<CloudSurface> {
+pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<CloudSurface> {
     let points = distinct(cloud);
     let search = Search::new(&points.positions)?;
     let nearest = search.nearest();
     let spacing = spacing(&points.positions, &nearest);
-    let mut found = normals(&points, &nearest, source)?;
-    let network = Network::new(lines, &search, &points.positions, &spacing);
+    let mut normals = normals(&points, &nearest, source)?;
+    let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
+    let (network, given) = match lines {
+        Lines::Given(lines) => (resampled(lines), lines),
+        Lines::Found(sought) => {
+            (resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?), &[][..])
+        }
+    };
     drop(search);
-    let lost = segments_of(lines, &network.far);
-    let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut found));
-    let sites =
-        Sites { positions: &points.positions, normals: &found.normals, spacing: &spacing, nearest: &nearest };
+    let lost = if given.is_empty() { Vec::new() } else { segments_of(given, &network.far) };
+    let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut normals));
+    let sites = Sites {
+        positions: &points.positions,
+        normals: &normals.normals,
+        spacing: &spacing,
+        nearest: &nearest,
+    };
     let mut joined = match &cut {
         Some(cut) => sites.join(&|a, b| cut.parts(&sites, a, b)),
         None => sites.join(&|_, _| false),
@@ -62,8 +84,10 @@ pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: &[Vec<DVec3>]) 
     let outlier = outliers(&nearest, &spacing, &joined, &on_line);
     let place = |v: &u32| outlier[points.place[*v as usize] as usize];
     let left_out = (0..points.place.len() as u32).filter(place).collect();
-    let surface = assemble(&points, &found.normals, &joined, &outlier, cut.as_ref(), joins);
-    Ok(CloudSurface { surface, left_out, matched: (!lines.is_empty()).then(|| matched(lines, cut.as_ref(), lost)) })
+    let surface = assemble(&points, &normals.normals, &joined, &outlier, cut.as_ref(), joins);
+    let edges = cut.as_ref().map_or(0, |cut| cut.found().0);
+    let matched = (!given.is_empty()).then(|| matched(given, cut.as_ref(), lost));
+    Ok(CloudSurface { surface, left_out, edges, matched })
 }
 
 /// Cuts the cloud along a network; estimated normals beside it are estimated again.

@@ -4,6 +4,7 @@
 
 pub mod canonical;
 pub mod chains;
+pub mod cloud_creases;
 pub mod cloud_graph;
 pub mod cloud_normals;
 pub mod cloud_surface;

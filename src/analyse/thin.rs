@@ -175,7 +175,7 @@ mod tests {
 
     use super::*;
     use crate::analyse::cloud_normals::NormalSource;
-    use crate::analyse::cloud_surface::cloud_surface;
+    use crate::analyse::cloud_surface::{Lines, cloud_surface};
     use crate::model::cloud::Cloud;
 
     /// Points spread evenly over a unit sphere, with its normals.
@@ -189,7 +189,7 @@ mod tests {
         let positions: Vec<Vec3> = (0..count).map(point).collect();
         let normals = positions.iter().map(|p| p.normalize()).collect();
         let cloud = Cloud { positions, normals, ..Cloud::default() };
-        cloud_surface(&cloud, NormalSource::Keep, &[]).unwrap().surface
+        cloud_surface(&cloud, NormalSource::Keep, Lines::Given(&[])).unwrap().surface
     }
 
     #[test]

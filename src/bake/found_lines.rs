@@ -1,10 +1,10 @@
-//! The feature lines of a mesh as polylines.
+//! The feature lines of a mesh or cloud as polylines.
 
 use glam::DVec3;
 
 use super::options::{Edges, Options};
 use super::{feature_lines, model_error};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ingest::Input;
 use crate::ingest::chain::chain;
 use crate::model::polyline::Polylines;
@@ -16,25 +16,21 @@ const STRAIGHT: f64 = 3e-7;
 /// A line that turns by more than this (cosine of 45°) has a corner there, and ends.
 const CORNER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The feature lines that a bake of a mesh with these options finds, borders among them: polylines
-/// that end where not two meet and at corners.
+/// The feature lines that a bake with these options finds, a mesh's borders among them: polylines
+/// that end where not two meet and at corners. A cloud's may end inside its surface as well.
 ///
 /// # Errors
-/// [`Error::Usage`] for a cloud and for options out of range.
+/// [`Error::Usage`](crate::Error::Usage) for options out of range.
 pub fn found_lines(input: &Input, options: &Options) -> Result<Polylines> {
     let frame = input.cloud().frame;
-    if let Input::Cloud(_) = input {
-        return Err(Error::Usage(
-            "feature lines are found on meshes only: give a mesh, or the lines of a cloud to bake --edges"
-                .into(),
-        ));
-    }
     let max_error = model_error(options, input)?;
-    let segments = feature_lines(input, &Edges::Auto, options.edge_angle, max_error).unwrap_or_default();
-    let lines = cornered(&joined(&segments));
-    let lines = lines.into_iter().map(|line| straightened(&line));
+    let found = feature_lines(input, &Edges::Auto, options.edge_angle, max_error).unwrap_or_default();
+    let lines = match input {
+        Input::Mesh(_) => cornered(&joined(&found)).iter().map(|line| straightened(line)).collect(),
+        Input::Cloud(_) => joined(&found),
+    };
     let to_input = |line: Vec<DVec3>| line.into_iter().map(|place| frame.to_input(place)).collect();
-    Ok(Polylines { lines: lines.map(to_input).collect() })
+    Ok(Polylines { lines: lines.into_iter().map(to_input).collect() })
 }
 
 /// Segments joined where exactly two meet.

@@ -12,7 +12,7 @@ use crate::tolerance::{DEFAULT_EDGE_ANGLE, DEFAULT_MAX_ERROR};
 /// Where the feature lines come from.
 #[derive(Clone, Debug, Default)]
 pub enum Edges {
-    /// Found on a mesh by dihedral angle and border; none for a cloud.
+    /// Found: on a mesh by dihedral angle and border, in a cloud by the planes on both sides.
     #[default]
     Auto,
     /// No feature lines; a mesh's borders still end its surface.
@@ -124,7 +124,8 @@ pub struct Options {
     pub max_error: MaxError,
     /// Where the feature lines come from.
     pub edges: Edges,
-    /// Dihedral angle, degrees, from which a mesh edge is a feature edge under [`Edges::Auto`].
+    /// Dihedral angle, degrees, from which a mesh edge or a crease of a cloud is a feature edge under
+    /// [`Edges::Auto`].
     pub edge_angle: f64,
     /// What a mesh's facets stand for.
     pub meaning: Meaning,

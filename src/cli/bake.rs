@@ -25,10 +25,11 @@ pub(super) struct Arguments {
     input: PathBuf,
     /// Feature lines: an OBJ with `l` records or a PLY with an `edge` element, moved onto the edges
     /// of a mesh where they lie off them by up to 0.5 % of the diagonal; `auto` finds them on a mesh
-    /// by dihedral angle and border and takes none for a cloud
+    /// by dihedral angle and border, in a cloud by the planes on both sides of a crease
     #[arg(long, value_name = "FILE|auto|none", default_value = "auto")]
     edges: String,
-    /// Dihedral angle from which `--edges auto` takes a mesh edge for a feature edge, degrees
+    /// Dihedral angle from which `--edges auto` takes an edge of a mesh, or a crease of a cloud, for a
+    /// feature edge, degrees
     #[arg(long, value_name = "DEG", default_value_t = DEFAULT_EDGE_ANGLE, value_parser = edge_angle)]
     edge_angle: f64,
     /// What the facets of a mesh stand for, and so what the error bound holds against

@@ -1,4 +1,4 @@
-//! `qsplat edges`: the feature lines of a mesh.
+//! `qsplat edges`: the feature lines of a mesh or cloud.
 
 use std::path::PathBuf;
 
@@ -15,18 +15,20 @@ use serde::Serialize;
 
 use super::{Outcome, bake, source};
 
-/// Finds the feature lines of a mesh: sharp edges and borders, as `bake --edges auto` takes them.
+/// Finds feature lines as `bake --edges auto` takes them: the sharp edges and borders of a mesh, the
+/// creases of a cloud.
 ///
 /// docs/edges-schema.md says what the JSON means.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A mesh: PLY, OBJ, OFF, glTF, GLB
+    /// A mesh or cloud: PLY, OBJ, OFF, glTF, GLB
     #[arg(value_name = "INPUT")]
     input: PathBuf,
     /// The lines, an OBJ with `l` records that `bake --edges` reads
     #[arg(short, long, value_name = "OUT.obj")]
     output: PathBuf,
-    /// Dihedral angle from which an edge is a feature edge, degrees
+    /// Dihedral angle from which an edge is a feature edge, and angle by which the surface of a cloud
+    /// turns at a crease, degrees
     #[arg(long, value_name = "DEG", default_value_t = DEFAULT_EDGE_ANGLE, value_parser = bake::edge_angle)]
     edge_angle: f64,
     /// The error bound of the bake that the lines are for, as there: creases lower than it, and lines

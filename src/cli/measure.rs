@@ -33,7 +33,8 @@ pub(super) struct Arguments {
     /// Feature lines that the clipped borders are measured against, as in `bake`
     #[arg(long, value_name = "FILE|auto|none", default_value = "auto")]
     edges: String,
-    /// Dihedral angle from which `--edges auto` takes a mesh edge for a feature edge, degrees
+    /// Dihedral angle from which `--edges auto` takes an edge of a mesh, or a crease of a cloud, for a
+    /// feature edge, degrees
     #[arg(long, value_name = "DEG", default_value_t = DEFAULT_EDGE_ANGLE, value_parser = bake::edge_angle)]
     edge_angle: f64,
     /// What the facets of a mesh stand for, as in `bake`

@@ -38,7 +38,8 @@ pub struct Input {
     pub colors: bool,
     /// Why the colours were left out; `None` if they were kept.
     pub colors_left_out: Option<String>,
-    /// Mesh edges taken for feature edges, found or matched; 0 for a cloud.
+    /// Mesh edges taken for feature edges, found or matched; of a cloud, segments of the lines it is
+    /// cut along, a spacing long.
     pub feature_edges: u64,
     /// Segments of the feature lines that were given; `None` if none were.
     pub line_segments: Option<u64>,

@@ -47,6 +47,19 @@ fn a_cube_has_sharp_edges() {
 }
 
 #[test]
+fn the_edges_that_a_cube_has_are_found() {
+    let (places, normals) = cube(1500);
+    let cloud = cloud(&places, &normals);
+    let [given, found] = [Edges::Given(edges()), Edges::Auto].map(|edges| {
+        bake(&cloud, &Options { edges, ..options(MaxError::Relative(1e-3)) }).asset.splats.len()
+    });
+    assert!(found <= given + 4, "{found} splats, {given} with the edges given");
+    let none = Options { edges: Edges::None, ..options(MaxError::Relative(1e-3)) };
+    let none = bake(&cloud, &none).asset.splats;
+    assert!(none.iter().all(|splat| splat.clips.is_empty()) && none.len() > 2 * found, "{}", none.len());
+}
+
+#[test]
 fn hostile_lines_do_no_harm() {
     let (places, normals) = cube(400);
     let mut draw = Draw(22);

@@ -1,0 +1,221 @@
+//! Ends of lines brought together: over gaps, at corners, and on the lines that they run into.
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::lines::Line;
+use crate::analyse::nearest::Search;
+use crate::analyse::sets::Sets;
+use crate::error::Result;
+
+/// How far beyond its last sample a line may be carried on, in its size: near a corner the third
+/// face hides it.
+const AHEAD: f64 = 1.8;
+
+/// How far back from its last sample a line may be cut for a corner, in its size.
+const BACK: f64 = 0.6;
+
+/// How far from a corner a line that is carried on may pass, in its size.
+const MISS: f64 = 0.4;
+
+/// Ends face each other over a gap in one line if both lead to the other within this cosine (37°).
+const FACING: f64 = 0.8;
+
+/// Ends that run the same way or against each other (sine of 15°) lead to no corner.
+const PARALLEL: f64 = 0.26;
+
+/// The way from an end is taken over this many of the line's places.
+const TANGENT: usize = 4;
+
+/// Ends, or places of lines, looked at around one end.
+const LOOKED_AT: usize = 16;
+
+/// A line of fewer places than this does not close on itself at a corner.
+const LOOP: usize = 8;
+
+/// Weight of the ends' mean among the lines that meet at a corner, so that nearly parallel ones do
+/// not meet far away.
+const MEAN_WEIGHT: f64 = 1e-2;
+
+/// An end of a line.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    line: usize,
+    last: bool,
+    place: DVec3,
+    /// Unit vector that carries the line on.
+    outward: DVec3,
+    size: f64,
+    /// How many places its line has.
+    places: usize,
+}
+
+impl End {
+    fn of(line: usize, of: &Line, last: bool) -> Option<Self> {
+        let count = of.places.len();
+        let inner = TANGENT.min(count.checked_sub(1)?);
+        let (place, before) = match last {
+            true => (of.places[count - 1], of.places[count - 1 - inner]),
+            false => (of.places[0], of.places[inner]),
+        };
+        Some(Self {
+            line,
+            last,
+            place,
+            outward: (place - before).try_normalize()?,
+            size: of.size,
+            places: count,
+        })
+    }
+
+    /// Whether this end and another are on both sides of a gap.
+    fn faces(&self, other: &Self) -> bool {
+        let way = other.place - self.place;
+        let length = way.length();
+        let lead = way.dot(self.outward).min(-way.dot(other.outward));
+        let apart = self.line != other.line || self.places >= LOOP;
+        apart && length > 0.0 && lead >= FACING * length && length <= AHEAD * self.size.min(other.size)
+    }
+
+    /// Whether a place is where the line may go on to.
+    fn reaches(&self, place: DVec3) -> bool {
+        let way = place - self.place;
+        let ahead = way.dot(self.outward);
+        (-BACK * self.size..=AHEAD * self.size).contains(&ahead)
+            && way.reject_from_normalized(self.outward).length() <= MISS * self.size
+    }
+}
+
+fn ends(lines: &[Line]) -> Vec<End> {
+    let open = lines.iter().enumerate().filter(|(_, line)| !line.closed);
+    open.flat_map(|(n, line)| [false, true].into_iter().filter_map(move |last| End::of(n, line, last)))
+        .collect()
+}
+
+fn search(places: impl Iterator<Item = DVec3>) -> Result<Option<Search>> {
+    let places: Vec<Vec3> = places.map(|place| place.as_vec3()).collect();
+    if places.is_empty() { Ok(None) } else { Search::new(&places).map(Some) }
+}
+
+/// Carries the ends of lines on to corners and to other lines; how many lines meet at each line's
+/// two ends then: 0 for an end that stays loose.
+///
+/// # Errors
+/// As [`Search::new`].
+pub(super) fn join(lines: &mut [Line]) -> Result<Vec<[usize; 2]>> {
+    let mut met = vec![[0; 2]; lines.len()];
+    let mut loose = ends(lines);
+    for meeting in [gaps, corners] {
+        for (place, ends) in meeting(&loose)? {
+            for &n in &ends {
+                let end = &loose[n];
+                extend(&mut lines[end.line], end, place);
+                met[end.line][usize::from(end.last)] = ends.len();
+            }
+        }
+        loose.retain(|end| met[end.line][usize::from(end.last)] == 0);
+    }
+    for (end, place) in run_into(lines, &loose)? {
+        extend(&mut lines[end.line], &end, place);
+        met[end.line][usize::from(end.last)] = 2;
+    }
+    Ok(met)
+}
+
+/// Lets a line end at a place.
+fn extend(line: &mut Line, end: &End, place: DVec3) {
+    let beyond = |other: DVec3| (other - place).dot(end.outward) >= 0.0;
+    // What lies beyond the corner goes, but for the line's other end.
+    while line.places.len() > 2 {
+        let last = if end.last { line.places.len() - 1 } else { 0 };
+        if !beyond(line.places[last]) {
+            break;
+        }
+        line.places.remove(last);
+    }
+    if end.last { line.places.push(place) } else { line.places.insert(0, place) }
+}
+
+/// Where the two ends at a gap meet: of all that face each other the nearest, if that is mutual.
+fn gaps(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
+    let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
+    let facing = |n: usize| {
+        let near = search.around(ends[n].place.as_vec3(), LOOKED_AT).into_iter().map(|other| other as usize);
+        near.filter(|&other| other != n).find(|&other| ends[n].faces(&ends[other]))
+    };
+    let facing: Vec<Option<usize>> = (0..ends.len()).map(facing).collect();
+    let mutual = facing.iter().enumerate().filter_map(|(n, &other)| Some((n, other?)));
+    let mutual = mutual.filter(|&(n, other)| n < other && facing[other] == Some(n));
+    Ok(mutual.map(|(n, other)| (0.5 * (ends[n].place + ends[other].place), vec![n, other])).collect())
+}
+
+/// Where ends meet, and which do.
+fn corners(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
+    let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
+    let mut sets = Sets::new(ends.len());
+    for (n, end) in ends.iter().enumerate() {
+        for other in search.around(end.place.as_vec3(), LOOKED_AT) {
+            if other as usize != n && meet(end, &ends[other as usize]) {
+                sets.merge(n as u32, other);
+            }
+        }
+    }
+    let mut groups: Vec<(u32, usize)> = (0..ends.len()).map(|n| (sets.root(n as u32), n)).collect();
+    groups.sort_unstable();
+    let groups = groups.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1);
+    Ok(groups.filter_map(|group| corner(ends, group.iter().map(|&(_, n)| n).collect())).collect())
+}
+
+/// Whether two ends lead to one place.
+fn meet(a: &End, b: &End) -> bool {
+    let cross = a.outward.cross(b.outward);
+    let between = b.place - a.place;
+    if cross.length() <= PARALLEL {
+        return false;
+    }
+    // Where the two lines pass each other.
+    let square = cross.length_squared();
+    let along = |outward: DVec3| between.cross(outward).dot(cross) / square;
+    let (s, t) = (along(b.outward), along(a.outward));
+    let place = 0.5 * (a.place + s * a.outward + b.place + t * b.outward);
+    (a.line != b.line || a.places >= LOOP) && a.reaches(place) && b.reaches(place)
+}
+
+/// The place nearest to all lines that end there, and those ends that reach it.
+fn corner(ends: &[End], mut of: Vec<usize>) -> Option<(DVec3, Vec<usize>)> {
+    loop {
+        let mean = of.iter().map(|&n| ends[n].place).sum::<DVec3>() / of.len() as f64;
+        let (mut square, mut side) = (MEAN_WEIGHT * DMat3::IDENTITY, DVec3::ZERO);
+        for &n in &of {
+            let End { place, outward: o, .. } = ends[n];
+            square += DMat3::IDENTITY - DMat3::from_cols(o.x * o, o.y * o, o.z * o);
+            side += (place - mean).reject_from_normalized(o);
+        }
+        let place = mean + square.inverse() * side;
+        let before = of.len();
+        of.retain(|&n| ends[n].reaches(place));
+        if of.len() < 2 {
+            return None;
+        }
+        if of.len() == before {
+            return Some((place, of));
+        }
+    }
+}
+
+/// Where loose ends run into other lines: a place of each such line.
+fn run_into(lines: &[Line], loose: &[End]) -> Result<Vec<(End, DVec3)>> {
+    let all: Vec<(usize, DVec3)> = lines
+        .iter()
+        .enumerate()
+        .flat_map(|(n, line)| line.places.iter().map(move |&place| (n, place)))
+        .collect();
+    let Some(search) = search(all.iter().map(|(_, place)| *place))? else { return Ok(Vec::new()) };
+    let hit = |end: &End| {
+        let target = end.place + 0.5 * AHEAD * end.size * end.outward;
+        let near = search.around(target.as_vec3(), 2 * LOOKED_AT).into_iter().map(|n| all[n as usize]);
+        let reached = near.filter(|&(line, place)| line != end.line && end.reaches(place));
+        let nearest = reached.min_by(|a, b| a.1.distance(end.place).total_cmp(&b.1.distance(end.place)));
+        nearest.map(|(_, place)| (*end, place))
+    };
+    Ok(loose.iter().filter_map(hit).collect())
+}

@@ -1,0 +1,111 @@
+//! Finds the creases of a cloud.
+//!
+//! 1. `samples`: where the points beside one lie as on no smooth surface, two half planes are fitted
+//!    to those around (`plane`, `hinge`); where they explain them much better than a quadric does
+//!    (`bowl`), their line passes the crease.
+//! 2. `ridge`: such samples are drawn together onto one line, and thinned out along it.
+//! 3. `links`: each is linked to the next on either side; `lines` keeps the chains that are sharp
+//!    enough and smooths them.
+//! 4. `corners`: ends that lead to one place, or into another line, are carried on to it.
+//!
+//! Sizes are told in spacings of the points. Each stage takes what the one before made in the order of
+//! the points, which lie along a Morton curve, so that nothing depends on the order of the input or
+//! on the threads.
+
+mod bowl;
+mod corners;
+mod hinge;
+mod lines;
+mod links;
+mod plane;
+mod ridge;
+mod samples;
+#[cfg(test)]
+mod tests;
+
+use glam::{DVec3, Vec3};
+
+use super::distinct::distinct;
+use super::nearest::{Nearest, Search, spacing};
+use super::sets::Sets;
+use crate::error::Result;
+use crate::model::cloud::Cloud;
+use lines::Line;
+use samples::Points;
+
+/// What counts as a crease.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sought {
+    /// The angle by which the surface turns, degrees.
+    pub degrees: f64,
+    /// Standard deviation of the points from their surface, model units.
+    pub noise: f64,
+    /// Lines shorter than this, taken together with all that they meet, are left out; model units.
+    pub shortest: f64,
+}
+
+/// A crease goes on, from where it is sharp enough by itself, where it turns by this share of the
+/// angle.
+const WEAK_SHARE: f64 = 0.75;
+
+/// A line with loose ends is at least this many neighbourhoods long: one with none, with one, with
+/// two.
+const LENGTHS: [f64; 3] = [0.5, 3.0, 5.0];
+
+/// Lines along which the surface of a cloud is creased, model units; a closed one repeats its first
+/// place at the end.
+///
+/// # Errors
+/// [`crate::Error::Internal`] should the neighbour search not take the points.
+pub fn cloud_creases(cloud: &Cloud, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
+    let positions = distinct(cloud).positions;
+    let search = Search::new(&positions)?;
+    let nearest = search.nearest();
+    let spacing = spacing(&positions, &nearest);
+    found(&positions, &search, &nearest, &spacing, sought)
+}
+
+/// As [`cloud_creases`], of distinct points along the Morton curve whose neighbours are known.
+///
+/// # Errors
+/// As [`cloud_creases`].
+pub fn found(
+    positions: &[Vec3],
+    search: &Search,
+    nearest: &Nearest,
+    spacing: &[f32],
+    sought: &Sought,
+) -> Result<Vec<Vec<DVec3>>> {
+    let cosine = |degrees: f64| libm::cos(degrees.to_radians());
+    let points = Points { positions, search, nearest, spacing, noise: sought.noise };
+    let samples = ridge::ridge(points.samples(cosine(WEAK_SHARE * sought.degrees)))?;
+    let sharp = cosine(sought.degrees);
+    let mut lines: Vec<Line> =
+        links::chains(&samples)?.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
+    let met = corners::join(&mut lines)?;
+    Ok(worth_it(lines, &met, sought.shortest).into_iter().map(Line::whole).collect())
+}
+
+/// The lines that are long enough for what they meet.
+fn worth_it(lines: Vec<Line>, met: &[[usize; 2]], shortest: f64) -> Vec<Line> {
+    let mut sets = Sets::new(lines.len());
+    let mut ends: Vec<([u64; 3], u32)> = Vec::new();
+    for (n, line) in (0_u32..).zip(&lines) {
+        ends.extend(line.places.iter().map(|place| (place.to_array().map(f64::to_bits), n)));
+    }
+    ends.sort_unstable();
+    for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        sets.merge(pair[0].1, pair[1].1);
+    }
+    let mut together = vec![0.0; lines.len()];
+    for (n, line) in (0_u32..).zip(&lines) {
+        together[sets.root(n) as usize] += line.length();
+    }
+    let long = |n: usize, line: &Line, root: u32| {
+        let loose = if line.closed { 0 } else { met[n].iter().filter(|met| **met == 0).count() };
+        together[root as usize] >= shortest && line.length() >= LENGTHS[loose] * line.size
+    };
+    let keep: Vec<bool> =
+        lines.iter().enumerate().map(|(n, line)| long(n, line, sets.root(n as u32))).collect();
+    lines.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(line, _)| line).collect()
+}

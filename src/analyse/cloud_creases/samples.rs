@@ -1,0 +1,180 @@
+//! Places on creases, each found from the points around one point of the cloud.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::bowl;
+use super::hinge::Hinge;
+use super::plane::Moments;
+use crate::analyse::nearest::{Nearest, Search, listed};
+
+/// A place on a crease, model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    /// Where.
+    pub(super) place: DVec3,
+    /// Unit vector along the crease, of either sign.
+    pub(super) along: DVec3,
+    /// Unit vector that halves the angle between the two sides: into a ridge, out of a groove.
+    pub(super) between: DVec3,
+    /// Cosine of the angle by which the surface turns.
+    pub(super) turn: f64,
+    /// Radius of the neighbourhood that showed it.
+    pub(super) size: f64,
+}
+
+/// Points that scatter about their plane by less than this share of the spacing, beyond what noise
+/// does, lie on no crease: within half a spacing of one of 30° they scatter by 0.13, on a sphere of
+/// eight spacings by 0.1.
+const ROUGH: f64 = 0.1;
+
+/// Of the variance that noise has, what few points show of it, at least: they fit their plane better
+/// than they do the surface.
+const ROUGH_NOISE: f64 = 0.7;
+
+/// Points looked at around one: a few spacings in all directions.
+const FEWEST: f64 = 32.0;
+
+/// The most, so that the work stays bounded.
+const MOST: f64 = 160.0;
+
+/// The neighbourhood's radius in standard deviations of the noise, so that the slopes of half of it
+/// are known to a few degrees.
+const ABOVE_NOISE: f64 = 13.0;
+
+/// Noise of more than this many spacings drowns what few points show.
+const DROWNED: f64 = 1.0;
+
+/// Points farther from either half plane than this many spacings are not explained by it...
+const CUTOFF: f64 = 0.5;
+
+/// ... or than this many standard deviations of the noise.
+const STRAY: f64 = 3.0;
+
+/// The share of the points that the two half planes must explain.
+const EXPLAINED: f64 = 0.75;
+
+/// The share of the points, and their number, that either side must hold.
+const SIDE_SHARE: f64 = 0.15;
+const SIDE_POINTS: usize = 6;
+
+/// Variance, in squares of the spacing, by which the points of a side must spread along it both
+/// ways: those of half a disc of three spacings do by 0.7.
+const SIDE_WIDTH: f64 = 0.15;
+
+/// A crease is seen by points within this share of the neighbourhood's radius.
+const BESIDE: f64 = 0.35;
+
+/// How much better than a quadric a hinge must explain the points, where both miss them by noise
+/// alone: the excess of the quadric's sum of squares over the hinge's mean square (a statistic of F).
+const BETTER: f64 = 16.0;
+
+/// The same where the hinge misses them by more than noise: the ratio of the excesses over it.
+const BETTER_SHAPED: f64 = 3.0;
+
+/// Two half planes that miss the points by more than this share of the spacing, and by more than
+/// their noise, are not the surface.
+const LOOSE: f64 = 0.15;
+const LOOSE_NOISE: f64 = 1.5;
+
+/// A quadric that misses the points by no more than this share of the spacing is as good as a hinge.
+const EXACT: f64 = 0.03;
+
+/// Surfaces that turn by more than this (cosine of 155°) are two sheets that touch.
+const FOLDED: f64 = -0.906;
+
+/// What samples are found from.
+#[derive(Clone, Copy)]
+pub(super) struct Points<'a> {
+    pub(super) positions: &'a [Vec3],
+    pub(super) search: &'a Search,
+    pub(super) nearest: &'a Nearest,
+    pub(super) spacing: &'a [f32],
+    /// Standard deviation of the points from their surface, model units.
+    pub(super) noise: f64,
+}
+
+impl Points<'_> {
+    /// Samples of all creases whose turn has a lesser cosine than `turn`, in the order of the points.
+    pub(super) fn samples(&self, turn: f64) -> Vec<Sample> {
+        let rough: Vec<usize> =
+            (0..self.positions.len()).into_par_iter().filter(|&n| self.is_rough(n)).collect();
+        let stride = (self.count(self.usual_spacing(&rough)) as f64 / FEWEST) as usize;
+        rough.par_iter().step_by(stride.max(1)).filter_map(|&n| self.sample(n, turn)).collect()
+    }
+
+    /// The median spacing of some points, model units.
+    fn usual_spacing(&self, some: &[usize]) -> f64 {
+        let mut spacings: Vec<f32> = some.iter().map(|&n| self.spacing[n]).collect();
+        spacings.sort_unstable_by(f32::total_cmp);
+        spacings.get(spacings.len() / 2).copied().unwrap_or_default().into()
+    }
+
+    /// Whether the nearest points lie about their plane as on no smooth surface.
+    fn is_rough(&self, n: usize) -> bool {
+        let spacing = f64::from(self.spacing[n]);
+        let noise = self.noise / spacing;
+        if !(spacing > 0.0 && noise < DROWNED) {
+            return false;
+        }
+        let here = self.positions[n].as_dvec3();
+        let offset = |other: u32| (self.positions[other as usize].as_dvec3() - here) / spacing;
+        let moments = Moments::of(std::iter::once(DVec3::ZERO).chain(listed(&self.nearest[n]).map(offset)));
+        moments.thickness() > ROUGH * ROUGH + ROUGH_NOISE * noise * noise
+    }
+
+    /// How many points are looked at where they lie so far apart.
+    fn count(&self, spacing: f64) -> usize {
+        let radius = ABOVE_NOISE * self.noise / spacing;
+        (PI * radius * radius).clamp(FEWEST, MOST) as usize
+    }
+
+    /// The crease beside a point.
+    fn sample(&self, n: usize, turn: f64) -> Option<Sample> {
+        let spacing = f64::from(self.spacing[n]);
+        let here = self.positions[n].as_dvec3();
+        let around = self.search.around(self.positions[n], self.count(spacing));
+        let offset = |&other: &u32| (self.positions[other as usize].as_dvec3() - here) / spacing;
+        let points: Vec<DVec3> = around.iter().map(offset).collect();
+        let radius = (points.len() as f64 / PI).sqrt();
+        let noise = self.noise / spacing;
+        let cutoff = CUTOFF.max(STRAY * noise);
+        let normal = Moments::of(points.iter().copied()).plane()?.normal;
+        let smooth = bowl::scatter(&points, normal, radius, cutoff).unwrap_or(cutoff * cutoff);
+        if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
+            return None;
+        }
+        let hinge = Hinge::fit(&points, normal, cutoff)?;
+        let sound =
+            is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
+        let turned = (FOLDED..turn).contains(&hinge.turn());
+        (sound && turned).then(|| Sample {
+            place: here + spacing * hinge.foot,
+            along: hinge.along,
+            between: (hinge.inward[0] + hinge.inward[1]).normalize_or(normal),
+            turn: hinge.turn(),
+            size: radius * spacing,
+        })
+    }
+}
+
+/// Whether the mean square by which a hinge misses so many points is so much less than that of a
+/// quadric that there is a crease; in squares of the spacing, as `noise` is in spacings.
+fn is_better(quadric: f64, hinge: f64, noise: f64, points: usize) -> bool {
+    let better = quadric - hinge - EXACT * EXACT;
+    hinge < LOOSE * LOOSE + LOOSE_NOISE * noise * noise
+        && better * points as f64 > BETTER * hinge
+        && better > BETTER_SHAPED * (hinge - noise * noise)
+}
+
+/// Whether a hinge among so many points has enough of them on both sides, and lies beside their
+/// middle.
+fn is_sound(hinge: &Hinge, points: usize, radius: f64) -> bool {
+    let share = |held: usize| held as f64 / points as f64;
+    share(hinge.held[0] + hinge.held[1]) >= EXPLAINED
+        && hinge.held.into_iter().all(|held| held >= SIDE_POINTS && share(held) >= SIDE_SHARE)
+        && hinge.width.into_iter().all(|width| width >= SIDE_WIDTH)
+        && hinge.foot.length() <= BESIDE * radius
+}

@@ -1,0 +1,173 @@
+#![allow(clippy::unwrap_used)]
+
+use glam::DVec3;
+
+use super::*;
+use crate::analyse::canonical::mix;
+use crate::analyse::segment_grid::SegmentGrid;
+
+/// Within `[-1, 1]`.
+fn random(n: u64) -> f64 {
+    (mix(n) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// About normal, of variance 1: the sum of twelve numbers (Irwin and Hall).
+fn normal(n: u64) -> f64 {
+    (0..12).map(|k| 0.5 * random((1 << 40) + 16 * n + k)).sum()
+}
+
+/// A place that strays by `scatter` in every direction.
+fn strayed(place: DVec3, scatter: f64, n: u64) -> Vec3 {
+    (place + scatter * DVec3::new(normal(3 * n), normal(3 * n + 1), normal(3 * n + 2))).as_vec3()
+}
+
+fn cloud(positions: Vec<Vec3>) -> Cloud {
+    Cloud { positions, ..Cloud::default() }
+}
+
+/// Points strewn over the faces of the cube `[-1, 1]³ / 2`: one for about 1/24² of a face.
+fn cube(scatter: f64) -> Vec<Vec3> {
+    let place = |n: u64| {
+        let mut place = 0.5 * DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2));
+        place[(n % 3) as usize] = if n % 6 < 3 { 0.5 } else { -0.5 };
+        place
+    };
+    (0..6 * 576).map(|n| strayed(place(n), scatter, n)).collect()
+}
+
+/// The mean distance of the cube's points.
+const SPACING: f64 = 1.0 / 24.0;
+
+fn cube_edges() -> Vec<Vec<DVec3>> {
+    let corner = |n: usize| DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64) - 0.5;
+    let ends = (0..8).flat_map(|n| [1, 2, 4].map(|bit| (n, n | bit)));
+    ends.filter(|(a, b)| a != b).map(|(a, b)| vec![corner(a), corner(b)]).collect()
+}
+
+/// Points of a cylinder of radius 0.4 and height 0.8 with flat ends, `each` on either end, strewn.
+fn cylinder(each: u64) -> Vec<Vec3> {
+    let place = |n: u64| {
+        let (sin, cos) = libm::sincos(std::f64::consts::PI * random(2 * n));
+        let (side, height) = (0.4 * DVec3::new(cos, sin, 0.0), 0.4 * random(2 * n + 1));
+        match n % 6 {
+            0 | 1 => {
+                (0.5 + 0.5 * random(2 * n + 1)).sqrt() * side + if n % 6 == 0 { 0.4 } else { -0.4 } * DVec3::Z
+            }
+            _ => side + height * DVec3::Z,
+        }
+    };
+    (0..6 * each).map(|n| place(n).as_vec3()).collect()
+}
+
+/// Points of a sphere of radius 0.8, strewn evenly.
+fn sphere(count: u64, scatter: f64) -> Vec<Vec3> {
+    let place = |n: u64| {
+        let z = random(2 * n);
+        let (sin, cos) = libm::sincos(std::f64::consts::PI * random(2 * n + 1));
+        let across = libm::sqrt(1.0 - z * z);
+        0.8 * DVec3::new(across * cos, across * sin, z)
+    };
+    (0..count).map(|n| strayed(place(n), scatter, n)).collect()
+}
+
+/// Two half planes that meet along the x axis, the second turned down by an angle.
+fn roof(degrees: f64) -> Vec<Vec3> {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let place = |n: u64| {
+        let (x, y) = (0.7 * random(2 * n), 0.7 * random(2 * n + 1));
+        DVec3::new(x, if y > 0.0 { y * cos } else { y }, if y > 0.0 { -y * sin } else { 0.0 })
+    };
+    (0..3000).map(|n| place(n).as_vec3()).collect()
+}
+
+fn creases(positions: Vec<Vec3>, noise: f64) -> Vec<Vec<DVec3>> {
+    cloud_creases(&cloud(positions), &Sought { degrees: 40.0, noise, shortest: 0.02 }).unwrap()
+}
+
+/// The greatest distance of places on some lines from others.
+fn apart(lines: &[Vec<DVec3>], others: &[Vec<DVec3>]) -> f64 {
+    let segments = |lines: &[Vec<DVec3>]| -> Vec<[DVec3; 2]> {
+        lines.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0], pair[1]]).collect()
+    };
+    let grid = SegmentGrid::new(segments(others));
+    let places =
+        segments(lines).into_iter().flat_map(|[a, b]| (0..=20).map(move |n| a.lerp(b, 0.05 * f64::from(n))));
+    places
+        .map(|place| grid.nearest(place, 4.0).map_or(f64::INFINITY, |near| near.distance))
+        .fold(0.0, f64::max)
+}
+
+/// How many lines end at each place where any does.
+fn meeting(lines: &[Vec<DVec3>]) -> Vec<usize> {
+    let ends = lines.iter().flat_map(|line| [line[0], line[line.len() - 1]]);
+    let mut ends: Vec<[u64; 3]> = ends.map(|end| end.to_array().map(f64::to_bits)).collect();
+    ends.sort_unstable();
+    ends.chunk_by(|a, b| a == b).map(<[_]>::len).collect()
+}
+
+#[test]
+fn a_cube_has_twelve_edges_that_meet_in_eight_corners() {
+    for (scatter, off) in [(0.0, 0.3), (0.2, 1.0)] {
+        let found = creases(cube(scatter * SPACING), scatter * SPACING);
+        let [far, missing] = [apart(&found, &cube_edges()), apart(&cube_edges(), &found)];
+        assert!(far < off * SPACING && missing < off * SPACING, "{scatter}: {far} {missing}");
+        let meeting = meeting(&found);
+        // Pieces of one edge meet in twos.
+        assert!(meeting.iter().all(|&ends| ends == 2 || ends == 3), "{scatter}: {meeting:?}");
+        assert_eq!(meeting.iter().filter(|&&ends| ends == 3).count(), 8, "{scatter}");
+    }
+}
+
+#[test]
+fn a_cylinder_has_two_circles() {
+    let found = creases(cylinder(2000), 0.0);
+    for place in found.iter().flatten() {
+        let off = (place.truncate().length() - 0.4).hypot(place.z.abs() - 0.4);
+        assert!(off < 0.007, "{place}: {off}");
+    }
+    assert!(meeting(&found).iter().all(|&ends| ends == 2), "{:?}", meeting(&found));
+    let length: f64 =
+        found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
+    assert!((length / (1.6 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{length}");
+}
+
+#[test]
+fn smooth_surfaces_have_no_creases() {
+    assert_eq!(creases(sphere(4000, 0.0), 0.0), Vec::<Vec<DVec3>>::new());
+    // Points lie 0.045 apart.
+    for scatter in [0.005, 0.02] {
+        assert_eq!(creases(sphere(4000, scatter), scatter), Vec::<Vec<DVec3>>::new());
+    }
+    // Hardly more than its radius apart.
+    assert_eq!(creases(sphere(60, 0.0), 0.0), Vec::<Vec<DVec3>>::new());
+    let solid = (0..3000).map(|n| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)).as_vec3());
+    assert_eq!(creases(solid.collect(), 0.0), Vec::<Vec<DVec3>>::new());
+}
+
+#[test]
+fn the_angle_decides() {
+    for (degrees, lines) in [(25.0, 0), (55.0, 1), (90.0, 1), (140.0, 1)] {
+        let found = creases(roof(degrees), 0.0);
+        assert_eq!(found.is_empty(), lines == 0, "{degrees}: {found:?}");
+        let axis = [vec![DVec3::X, -DVec3::X]];
+        assert!(apart(&found, &axis) < 0.01, "{degrees}: {}", apart(&found, &axis));
+    }
+}
+
+#[test]
+fn neither_the_order_of_points_nor_repeated_ones_matter() {
+    let points = cube(0.01);
+    let found = creases(points.clone(), 0.01);
+    assert!(!found.is_empty());
+    let turned: Vec<Vec3> = points.iter().rev().chain(&points[..100]).copied().collect();
+    assert_eq!(creases(turned, 0.01), found);
+}
+
+#[test]
+fn clouds_of_few_points_have_none() {
+    for count in [0, 1, 2, 5, 20] {
+        assert!(creases(cube(0.0)[..count].to_vec(), 0.0).is_empty());
+    }
+    let line = (0..100).map(|n| Vec3::X * (n as f32 / 100.0)).collect();
+    assert!(creases(line, 0.0).is_empty());
+}
