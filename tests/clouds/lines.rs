@@ -1,4 +1,4 @@
-//! Clouds cut along given lines.
+//! Clouds cut along lines, given or found.
 
 use glam::DVec3;
 use qsplat::bake::{Edges, MaxError, Options};
@@ -50,13 +50,11 @@ fn a_cube_has_sharp_edges() {
 fn the_edges_that_a_cube_has_are_found() {
     let (places, normals) = cube(1500);
     let cloud = cloud(&places, &normals);
-    let [given, found] = [Edges::Given(edges()), Edges::Auto].map(|edges| {
-        bake(&cloud, &Options { edges, ..options(MaxError::Relative(1e-3)) }).asset.splats.len()
-    });
-    assert!(found <= given + 4, "{found} splats, {given} with the edges given");
-    let none = Options { edges: Edges::None, ..options(MaxError::Relative(1e-3)) };
-    let none = bake(&cloud, &none).asset.splats;
-    assert!(none.iter().all(|splat| splat.clips.is_empty()) && none.len() > 2 * found, "{}", none.len());
+    let [found, none] = [Edges::Auto, Edges::None]
+        .map(|edges| bake(&cloud, &Options { edges, ..options(MaxError::Relative(1e-3)) }).asset.splats);
+    assert!(none.iter().all(|splat| splat.clips.is_empty()));
+    // Six faces, and what lies beside corners and gaps in the lines.
+    assert!(none.len() > 2 * found.len(), "{} and {}", found.len(), none.len());
 }
 
 #[test]
