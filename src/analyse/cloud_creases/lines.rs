@@ -111,7 +111,7 @@ mod tests {
     fn smoothing_keeps_circles_and_takes_scatter() {
         let circle = |n: usize, off: f64| {
             let (sin, cos) = libm::sincos(0.02 * std::f64::consts::PI * n as f64);
-            (1.0 + off * if n % 2 == 0 { 1.0 } else { -1.0 }) * DVec3::new(cos, sin, 0.0)
+            (1.0 + off * if n.is_multiple_of(2) { 1.0 } else { -1.0 }) * DVec3::new(cos, sin, 0.0)
         };
         for (off, left) in [(0.0, 1e-4), (0.02, 5e-3)] {
             let places: Vec<DVec3> = (0..100).map(|n| circle(n, off)).collect();

@@ -51,7 +51,8 @@ fn cylinder(each: u64) -> Vec<Vec3> {
         let (side, height) = (0.4 * DVec3::new(cos, sin, 0.0), 0.4 * random(2 * n + 1));
         match n % 6 {
             0 | 1 => {
-                (0.5 + 0.5 * random(2 * n + 1)).sqrt() * side + if n % 6 == 0 { 0.4 } else { -0.4 } * DVec3::Z
+                (0.5 + 0.5 * random(2 * n + 1)).sqrt() * side
+                    + if n.is_multiple_of(6) { 0.4 } else { -0.4 } * DVec3::Z
             }
             _ => side + height * DVec3::Z,
         }
