@@ -52,14 +52,14 @@ pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> R
     let spacing = spacing(&points.positions, &nearest);
     let mut normals = normals(&points, &nearest, source)?;
     let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
-    let (network, given) = match lines {
-        Lines::Given(lines) => (resampled(lines), lines),
+    let mut network = match lines {
+        Lines::Given(lines) => resampled(lines),
         Lines::Found(sought) => {
-            (resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?), &[][..])
+            resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?)
         }
     };
     drop(search);
-    let lost = if given.is_empty() { Vec::new() } else { segments_of(given, &network.far) };
+    let lost = std::mem::take(&mut network.far);
     let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut normals));
     let sites = Sites {
         positions: &points.positions,
@@ -85,8 +85,11 @@ pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> R
     let place = |v: &u32| outlier[points.place[*v as usize] as usize];
     let left_out = (0..points.place.len() as u32).filter(place).collect();
     let surface = assemble(&points, &normals.normals, &joined, &outlier, cut.as_ref(), joins);
-    let edges = cut.as_ref().map_or(0, |cut| cut.found().0);
-    let matched = (!given.is_empty()).then(|| matched(given, cut.as_ref(), lost));
+    let (edges, length) = cut.as_ref().map_or((0, 0.0), LineCut::found);
+    let matched = match lines {
+        Lines::Given(lines) if !lines.is_empty() => Some(matched(lines, edges, length, lost)),
+        Lines::Given(_) | Lines::Found(_) => None,
+    };
     Ok(CloudSurface { surface, left_out, edges, matched })
 }
 
@@ -108,23 +111,8 @@ fn cut(
     cut
 }
 
-/// The segments of some lines, counted over all.
-fn segments_of(lines: &[Vec<DVec3>], some: &[u32]) -> Vec<u32> {
-    let mut next = 0;
-    let ranges: Vec<_> = lines
-        .iter()
-        .map(|line| {
-            let first = next;
-            next += line.len().saturating_sub(1) as u32;
-            first..next
-        })
-        .collect();
-    some.iter().flat_map(|&line| ranges[line as usize].clone()).collect()
-}
-
-fn matched(lines: &[Vec<DVec3>], cut: Option<&LineCut>, lost: Vec<u32>) -> Matched {
+fn matched(lines: &[Vec<DVec3>], edges: usize, matched_length: f64, lost: Vec<u32>) -> Matched {
     let length = lines.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
-    let (edges, matched_length) = cut.map_or((0, 0.0), LineCut::found);
     Matched { edges, length, matched_length: matched_length.min(length), lost, ..Matched::default() }
 }
 

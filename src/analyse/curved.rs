@@ -57,7 +57,7 @@ pub(super) fn patches(welded: &Welded, edges: &Edges, sides: &Sides) -> Vec<Patc
         .par_iter()
         .zip(around)
         .map(|(vertices, around)| {
-            let corners = vertices.map(|v| welded.positions[v as usize].as_dvec3());
+            let corners = welded.places(*vertices);
             let sides = [0, 1, 2].map(|n| {
                 let [first, second] = curves[around[n] as usize];
                 if vertices[n] < vertices[(n + 1) % 3] { [first, second] } else { [second, first] }
@@ -73,7 +73,7 @@ pub(super) fn patches(welded: &Welded, edges: &Edges, sides: &Sides) -> Vec<Patc
 
 /// The two inner control points of an edge's curve, that at the lesser vertex first.
 fn curve(welded: &Welded, sides: &Sides, edge: &Edge, halves: &[Half]) -> [DVec3; 2] {
-    let [a, b] = edge.ends.map(|v| welded.positions[v as usize].as_dvec3());
+    let [a, b] = welded.places(edge.ends);
     let normals = |half: &Half| sides.along(half).map(|side| sides.normals[side as usize]);
     let [at_a, at_b] = match halves {
         [one] => normals(one).map(|normal| [normal; 2]),

@@ -4,7 +4,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
-use super::edges::{Edge, Edges, crease_cosine, face_normals};
+use super::edges::{Edges, crease_cosine, face_normals};
+use super::refine::length;
 use super::segment_grid::SegmentGrid;
 use super::snap::{Piece, pieces, snap};
 use super::weld::Welded;
@@ -20,6 +21,9 @@ const SMOOTH_DEGREES: f64 = 5.0;
 /// Nor do lines whose faces turn by less than [`SMOOTH_DEGREES`] on the mean and nowhere by this
 /// much: the seams of round faces, as coarse as their facets are.
 const SHARP_DEGREES: f64 = 10.0;
+
+/// What an edge counts as that does not join two agreeing faces: it ends the surface.
+const OPEN_DEGREES: f64 = 180.0;
 
 /// What became of the given lines, in segments of mesh edges and lengths in model units.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,62 +62,67 @@ pub struct Meant {
 /// mean the creases beside them, no farther than `reach` (model units).
 #[must_use]
 pub fn mark(welded: &Welded, edges: &Edges, segments: &[[DVec3; 2]], reach: f64) -> Meant {
-    let vertices = VertexGrid::new(&welded.positions);
-    let exact = |[a, b]: &[DVec3; 2]| edges.find(vertices.at(*a)?, vertices.at(*b)?);
-    let exact: Vec<Option<usize>> = segments.iter().map(exact).collect();
-    let mut followed = vec![false; edges.edges.len()];
-    exact.iter().flatten().for_each(|&edge| followed[edge] = true);
-    let loose: Vec<u32> =
-        (0_u32..).zip(&exact).filter(|(_, exact)| exact.is_none()).map(|(n, _)| n).collect();
-    if !loose.is_empty() {
-        mark_near(welded, edges, loose.iter().map(|&n| segments[n as usize]).collect(), &mut followed);
-    }
-    let turns = Turns::of(welded, edges);
-    let near = Followed::new(welded, edges, &followed);
-    let stray: Vec<Piece> = loose
-        .iter()
-        .flat_map(|&n| pieces(n, segments[n as usize], reach))
-        .filter(|piece| near.at(piece.middle()).is_none())
+    let exact = exact(welded, edges, segments);
+    let followed = Followed::new(welded, edges, followed(welded, edges, segments, &exact));
+    let loose = (0..segments.len()).filter(|&n| exact[n].is_none());
+    let stray: Vec<Piece> = pieces(segments, loose, reach)
+        .into_iter()
+        .filter(|piece| followed.at(piece.middle()).is_none())
         .collect();
-    let snapped = snap(welded, edges, [&turns.creases(edges), &followed], &stray, reach);
-    let beside = followed
-        .iter()
-        .zip(&snapped.edges)
-        .map(|(followed, snapped)| *followed || *snapped)
-        .collect::<Vec<_>>();
-    let marked = turns.sharp(welded, edges, &beside);
-    let runs_smooth = |n: usize| exact[n].or_else(|| near.at(0.5 * (segments[n][0] + segments[n][1])));
-    let mut is_stray = vec![false; segments.len()];
-    stray.iter().for_each(|piece| is_stray[piece.segment as usize] = true);
-    let kept =
-        (0..segments.len()).filter(|&n| !is_stray[n] && runs_smooth(n).is_some_and(|edge| marked[edge]));
+    let turns = Turns::of(welded, edges);
+    let snapped = snap(welded, edges, [&turns.creases(), &followed.marks], &stray, reach);
+    let meant: Vec<bool> = followed.marks.iter().zip(&snapped.edges).map(|(a, b)| *a || *b).collect();
+    let marked = turns.sharp(welded, edges, &meant);
+    let edge_of = |n: usize| exact[n].or_else(|| followed.at(middle(segments[n])));
+    let mut strays = vec![false; segments.len()];
+    stray.iter().for_each(|piece| strays[piece.segment as usize] = true);
+    let kept = (0..segments.len()).filter(|&n| !strays[n] && edge_of(n).is_some_and(|edge| marked[edge]));
     let moved = (0..marked.len()).filter(|&edge| snapped.edges[edge] && marked[edge]);
-    let lines = kept.map(|n| segments[n]).chain(moved.map(|edge| place(welded, edges.edges[edge].ends)));
+    let lines = kept.map(|n| segments[n]).chain(moved.map(|edge| welded.places(edges.edges[edge].ends)));
     let matched = Matched {
         length: segments.iter().map(|[a, b]| a.distance(*b)).sum(),
         moved_length: snapped.length,
         lost: snapped.lost,
-        ..matched(welded, edges, &beside, &marked)
+        ..matched(welded, edges, &meant, &marked)
     };
     Meant { lines: lines.collect(), marked, matched }
 }
 
-/// Marks the edges that pass some segment closely with their ends and their middle.
-fn mark_near(welded: &Welded, edges: &Edges, segments: Vec<[DVec3; 2]>, followed: &mut [bool]) {
-    let grid = SegmentGrid::new(segments);
-    followed.par_iter_mut().zip(&edges.edges).for_each(|(followed, edge)| {
-        let [a, b] = place(welded, edge.ends);
-        let reach = NEAR_SHARE * a.distance(b);
-        *followed |= [a, b, 0.5 * (a + b)].iter().all(|&p| grid.nearest(p, reach).is_some());
-    });
+/// The edge that each segment is, from vertex to vertex.
+fn exact(welded: &Welded, edges: &Edges, segments: &[[DVec3; 2]]) -> Vec<Option<usize>> {
+    let vertices = VertexGrid::new(&welded.positions);
+    segments.iter().map(|[a, b]| edges.find(vertices.at(*a)?, vertices.at(*b)?)).collect()
 }
 
-/// Adds up what the lines follow.
-fn matched(welded: &Welded, edges: &Edges, followed: &[bool], marked: &[bool]) -> Matched {
+/// The edges that are segments, and those that pass some other segment closely with their ends and
+/// their middle.
+fn followed(
+    welded: &Welded,
+    edges: &Edges,
+    segments: &[[DVec3; 2]],
+    exact: &[Option<usize>],
+) -> Vec<bool> {
+    let mut followed = vec![false; edges.edges.len()];
+    exact.iter().flatten().for_each(|&edge| followed[edge] = true);
+    let loose = segments.iter().zip(exact).filter(|(_, exact)| exact.is_none());
+    let loose: Vec<[DVec3; 2]> = loose.map(|(segment, _)| *segment).collect();
+    if loose.is_empty() {
+        return followed;
+    }
+    let grid = SegmentGrid::new(loose);
+    followed.par_iter_mut().zip(&edges.edges).for_each(|(followed, edge)| {
+        let [a, b] = welded.places(edge.ends);
+        let reach = NEAR_SHARE * a.distance(b);
+        *followed |= [a, b, middle([a, b])].iter().all(|&p| grid.nearest(p, reach).is_some());
+    });
+    followed
+}
+
+/// Adds up what the lines mean.
+fn matched(welded: &Welded, edges: &Edges, meant: &[bool], marked: &[bool]) -> Matched {
     let mut matched = Matched::default();
-    for (index, edge) in edges.edges.iter().enumerate().filter(|&(index, _)| followed[index]) {
-        let [a, b] = place(welded, edge.ends);
-        let length = a.distance(b);
+    for (index, edge) in edges.edges.iter().enumerate().filter(|&(index, _)| meant[index]) {
+        let length = length(welded, edge);
         matched.edges += usize::from(marked[index]);
         matched.matched_length += length;
         matched.smooth_length += if marked[index] { 0.0 } else { length };
@@ -123,18 +132,20 @@ fn matched(welded: &Welded, edges: &Edges, followed: &[bool], marked: &[bool]) -
 
 /// The edges that lines follow, to be found by place.
 struct Followed {
+    /// For each edge, whether one does.
+    marks: Vec<bool>,
+    /// Those edges.
     edges: Vec<usize>,
     grid: SegmentGrid,
     longest: f64,
 }
 
 impl Followed {
-    fn new(welded: &Welded, edges: &Edges, followed: &[bool]) -> Self {
-        let of: Vec<usize> = (0..followed.len()).filter(|&index| followed[index]).collect();
-        let segments: Vec<[DVec3; 2]> =
-            of.iter().map(|&index| place(welded, edges.edges[index].ends)).collect();
-        let longest = segments.iter().map(|[a, b]| a.distance(*b)).fold(0.0, f64::max);
-        Self { edges: of, grid: SegmentGrid::new(segments), longest }
+    fn new(welded: &Welded, edges: &Edges, marks: Vec<bool>) -> Self {
+        let of: Vec<usize> = (0..marks.len()).filter(|&index| marks[index]).collect();
+        let longest = of.iter().map(|&index| length(welded, &edges.edges[index])).fold(0.0, f64::max);
+        let segments = of.iter().map(|&index| welded.places(edges.edges[index].ends)).collect();
+        Self { marks, edges: of, grid: SegmentGrid::new(segments), longest }
     }
 
     /// The edge that runs through a place.
@@ -154,26 +165,22 @@ impl Turns {
         let normals = face_normals(&welded.positions, &welded.triangles);
         let turn = |edge| {
             let cosine = crease_cosine(edges, edge, &normals);
-            cosine.map_or(180.0, |cosine| libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees())
+            cosine.map_or(OPEN_DEGREES, |cosine| libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees())
         };
         Self(edges.edges.par_iter().map(turn).collect())
     }
 
     /// The edges that lines beside them may mean: creases, and those of borders.
-    fn creases(&self, edges: &Edges) -> Vec<bool> {
-        let crease = |(turn, edge): (&f64, &Edge)| *turn >= SHARP_DEGREES || edges.pair(edge).is_none();
-        self.0.iter().zip(&edges.edges).map(crease).collect()
+    fn creases(&self) -> Vec<bool> {
+        self.0.iter().map(|turn| *turn >= SHARP_DEGREES).collect()
     }
 
-    /// Which of the edges that lines follow are creases or borders.
-    fn sharp(&self, welded: &Welded, edges: &Edges, followed: &[bool]) -> Vec<bool> {
+    /// Which of the edges that lines mean are creases or borders.
+    fn sharp(&self, welded: &Welded, edges: &Edges, meant: &[bool]) -> Vec<bool> {
         let turn = |&edge: &u32| self.0[edge as usize];
-        let length = |&edge: &u32| {
-            let [a, b] = place(welded, edges.edges[edge as usize].ends);
-            a.distance(b)
-        };
-        let mut sharp = vec![false; followed.len()];
-        for Chain { edges: chain, .. } in chains(welded.positions.len(), edges, followed) {
+        let length = |&edge: &u32| length(welded, &edges.edges[edge as usize]);
+        let mut sharp = vec![false; meant.len()];
+        for Chain { edges: chain, .. } in chains(welded.positions.len(), edges, meant) {
             let most = chain.iter().map(turn).fold(0.0, f64::max);
             let turned: f64 = chain.iter().map(|edge| turn(edge) * length(edge)).sum();
             let all = chain.iter().map(length).sum::<f64>();
@@ -186,9 +193,8 @@ impl Turns {
     }
 }
 
-/// The ends of an edge, model units.
-pub(super) fn place(welded: &Welded, ends: [u32; 2]) -> [DVec3; 2] {
-    ends.map(|v| welded.positions[v as usize].as_dvec3())
+fn middle([a, b]: [DVec3; 2]) -> DVec3 {
+    0.5 * (a + b)
 }
 
 /// Finds the vertex at a place, up to the rounding of files.

@@ -33,7 +33,8 @@ pub struct Network {
     pub segments: Vec<[u32; 2]>,
     /// For each node, its segments.
     pub at_node: Rows,
-    /// Lines, by their place among those given, no part of which comes near the cloud.
+    /// Segments as given, counted over all lines, of those lines no part of which comes near the
+    /// cloud; ascending.
     pub far: Vec<u32>,
 }
 
@@ -46,14 +47,15 @@ impl Network {
             let spacing = f64::from(spacing[point]);
             (spacing > 0.0).then(|| (positions[point].as_dvec3().distance(place), spacing))
         };
-        let (mut pieces, mut far) = (Vec::new(), Vec::new());
-        for (index, line) in (0_u32..).zip(lines) {
-            let before = pieces.len();
+        let (mut pieces, mut far, mut given) = (Vec::new(), Vec::new(), 0);
+        for line in lines {
+            let (before, first) = (pieces.len(), given);
+            given += line.len().saturating_sub(1) as u32;
             for side in thinned(line, &near).windows(2) {
                 halve(side[0], side[1], HALVINGS, &near, &mut pieces);
             }
             if pieces.len() == before {
-                far.push(index);
+                far.extend(first..given);
             }
         }
         Self { far, ..Self::of_pieces(&pieces) }

@@ -96,9 +96,8 @@ pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<V
         }
     };
     let edges = Edges::of(&welded.triangles);
-    let place = |v: u32| welded.positions[v as usize].as_dvec3();
     let cut = edges.edges.iter().zip(&marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
-    let found = cut.map(|(edge, _)| edge.ends.map(place));
+    let found = cut.map(|(edge, _)| welded.places(edge.ends));
     found.chain(given).map(|segment| segment.to_vec()).collect()
 }
 

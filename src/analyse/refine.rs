@@ -42,7 +42,7 @@ pub(super) fn halve(welded: &mut Welded, edges: &Edges, middles: &[u32], marked:
 
 /// Appends the middle of an edge's ends, moved by an offset; its index.
 pub(super) fn push_middle(welded: &mut Welded, ends: [u32; 2], offset: DVec3) -> u32 {
-    let [a, b] = ends.map(|v| welded.positions[v as usize].as_dvec3());
+    let [a, b] = welded.places(ends);
     welded.positions.push((0.5 * (a + b) + offset).as_vec3());
     if !welded.colors.is_empty() {
         let [a, b] = ends.map(|v| welded.colors[v as usize]);

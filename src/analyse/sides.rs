@@ -87,7 +87,7 @@ impl Sides {
         }
         let mut areas = vec![0.0; faces.len()];
         for (face, corners) in (0_u32..).zip(&welded.triangles) {
-            let [a, b, c] = corners.map(|v| welded.positions[v as usize].as_dvec3());
+            let [a, b, c] = welded.places(*corners);
             areas[planes.root(face) as usize] += 0.5 * (b - a).cross(c - a).length();
         }
         let mut meeting: Vec<(u32, u32)> = Vec::with_capacity(3 * faces.len());

@@ -109,7 +109,7 @@ impl Over<'_> {
         let [from, to] = ends(self.corners, &half);
         let [from, to] = if half.forward { [from, to] } else { [to, from] };
         let place = self.patches[from.patch as usize].at(from.weights.lerp(to.weights, t));
-        let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());
+        let [a, b] = self.welded.places(edge.ends);
         place - a.lerp(b, t)
     }
 

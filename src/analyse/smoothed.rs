@@ -64,9 +64,8 @@ pub fn smoothed(mesh: &Mesh, features: &Features, smoothing: &Smoothing) -> Opti
     }
     let (fine, marked) = smooth(welded, marked, &sides, &smoothing.fineness);
     let edges = Edges::of(&fine.triangles);
-    let place = |v: u32| fine.positions[v as usize].as_dvec3();
     let marked = edges.edges.iter().zip(&marked).filter(|(_, mark)| **mark);
-    let lines = marked.map(|(edge, _)| edge.ends.map(place)).collect();
+    let lines = marked.map(|(edge, _)| fine.places(edge.ends)).collect();
     let vertices = Cloud {
         frame: mesh.vertices.frame,
         positions: fine.positions,

@@ -9,15 +9,15 @@ use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
 use super::edges::Edges;
-use super::given_lines::place;
+use super::refine::length;
 use super::segment_grid::SegmentGrid;
 use super::weld::Welded;
 
 /// Pieces are this share of the reach long: none passes a crease unnoticed.
 const STEP: f64 = 0.5;
 
-/// A segment becomes no more pieces than this.
-const MOST: f64 = 4096.0;
+/// Lines so long that they would become more pieces than this become longer ones.
+const MOST: f64 = 1e6;
 
 /// A line means creases that run its way within this cosine (60°): lines that tremble are meant to
 /// be straight.
@@ -49,11 +49,21 @@ impl Piece {
     }
 }
 
-/// A segment in pieces.
-pub(super) fn pieces(segment: u32, [a, b]: [DVec3; 2], reach: f64) -> impl Iterator<Item = Piece> {
-    let count = (a.distance(b) / (STEP * reach)).ceil().clamp(1.0, MOST);
-    let at = move |n: usize| a.lerp(b, n as f64 / count);
-    (0..count as usize).map(move |n| Piece { segment, ends: [at(n), at(n + 1)] })
+/// Some of the segments in pieces, in the order of `some`.
+pub(super) fn pieces(
+    segments: &[[DVec3; 2]],
+    some: impl Iterator<Item = usize> + Clone,
+    reach: f64,
+) -> Vec<Piece> {
+    let all: f64 = some.clone().map(|n| segments[n][0].distance(segments[n][1])).sum();
+    let step = (STEP * reach).max(all / MOST);
+    some.flat_map(|segment| {
+        let [a, b] = segments[segment];
+        let count = (a.distance(b) / step).ceil().max(1.0);
+        let at = move |n: usize| a.lerp(b, n as f64 / count);
+        (0..count as usize).map(move |n| Piece { segment: segment as u32, ends: [at(n), at(n + 1)] })
+    })
+    .collect()
 }
 
 /// What stray pieces of lines mean.
@@ -85,10 +95,9 @@ pub(super) fn snap(
     let chains = chains(welded.positions.len(), edges, may_be);
     let votes = votes(welded, edges, &chains, stray, reach);
     for of_segment in votes.chunk_by(|a, b| stray[a.piece].segment == stray[b.piece].segment) {
-        let meant = of_segment.iter().filter(|vote| vote.chain.is_some());
-        let length: f64 = meant.map(|vote| stray[vote.piece].length()).sum();
-        snapped.length += length;
-        if length == 0.0 {
+        let meant = || of_segment.iter().filter(|vote| vote.chain.is_some());
+        snapped.length += meant().map(|vote| stray[vote.piece].length()).sum::<f64>();
+        if meant().next().is_none() {
             snapped.lost.push(stray[of_segment[0].piece].segment);
         }
     }
@@ -98,7 +107,7 @@ pub(super) fn snap(
         let Some(chain) = votes[0].chain else { continue };
         let lines = SegmentGrid::new(votes.iter().map(|vote| stray[vote.piece].ends).collect());
         for &edge in &chains[chain].edges {
-            let [a, b] = place(welded, edges.edges[edge as usize].ends);
+            let [a, b] = welded.places(edges.edges[edge as usize].ends);
             let near = lines.nearest(0.5 * (a + b), BESIDE * reach);
             snapped.edges[edge as usize] = near.is_some_and(|near| {
                 let vote = votes[near.segment as usize];
@@ -106,8 +115,7 @@ pub(super) fn snap(
             });
         }
         close_gaps(&chains[chain], followed, &mut snapped.edges, |edge| {
-            let [a, b] = place(welded, edges.edges[edge as usize].ends);
-            a.distance(b) / (WIDEST_GAP * reach)
+            length(welded, &edges.edges[edge as usize]) / (WIDEST_GAP * reach)
         });
     }
     snapped
@@ -138,7 +146,7 @@ struct Vote {
 
 /// The chain nearest to each piece, of those that run its way.
 fn votes(welded: &Welded, edges: &Edges, chains: &[Chain], stray: &[Piece], reach: f64) -> Vec<Vote> {
-    let of = |(chain, edge): (usize, u32)| (chain, place(welded, edges.edges[edge as usize].ends));
+    let of = |(chain, edge): (usize, u32)| (chain, welded.places(edges.edges[edge as usize].ends));
     let every =
         chains.iter().enumerate().flat_map(|(n, chain)| chain.edges.iter().map(move |&edge| (n, edge)));
     let (chain_of, sides): (Vec<usize>, Vec<[DVec3; 2]>) = every.map(of).unzip();

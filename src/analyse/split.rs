@@ -83,7 +83,7 @@ fn point_normals(welded: &Welded, pieces: &[[u32; 3]], points: usize) -> Vec<Vec
     let faces = face_normals(&welded.positions, &welded.triangles);
     let mut sums = vec![DVec3::ZERO; points];
     for ((triangle, piece), &normal) in welded.triangles.iter().zip(pieces).zip(&faces) {
-        let at = triangle.map(|v| welded.positions[v as usize].as_dvec3());
+        let at = welded.places(*triangle);
         for n in 0..3 {
             let (to, from) = (at[(n + 1) % 3] - at[n], at[(n + 2) % 3] - at[n]);
             let angle = libm::atan2(to.cross(from).length(), to.dot(from));

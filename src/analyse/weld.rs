@@ -1,6 +1,6 @@
 //! Joins vertices of equal position, in an order that does not depend on the input's.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::canonical;
@@ -15,6 +15,14 @@ pub struct Welded {
     pub colors: Vec<[u8; 3]>,
     /// Triangles with the least index first, sorted, none degenerate, none repeated.
     pub triangles: Vec<[u32; 3]>,
+}
+
+impl Welded {
+    /// Where some vertices lie: of an edge's ends, of a triangle's corners.
+    #[must_use]
+    pub fn places<const N: usize>(&self, vertices: [u32; N]) -> [DVec3; N] {
+        vertices.map(|v| self.positions[v as usize].as_dvec3())
+    }
 }
 
 /// Welds a mesh; degenerate and repeated triangles and unused vertices disappear.

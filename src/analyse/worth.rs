@@ -113,7 +113,7 @@ impl Patches<'_> {
     fn is_sharp(&self, index: u32, worth: &Worth<'_>, visited: &mut Marks) -> bool {
         let edge = &self.edges.edges[index as usize];
         let Some((left, right)) = self.edges.pair(edge) else { return true };
-        let [a, b] = edge.ends.map(|v| self.welded.positions[v as usize].as_dvec3());
+        let [a, b] = self.welded.places(edge.ends);
         let middle = 0.5 * (a + b);
         let mut misfit = |radius: f64, over: bool, faces: &[u32]| {
             let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
@@ -159,7 +159,7 @@ impl Patches<'_> {
     /// be as large as the patch.
     fn lattice(&self, face: u32) -> impl Iterator<Item = DVec3> {
         let [a, b, c] =
-            self.welded.triangles[face as usize].map(|v| self.welded.positions[v as usize].as_dvec3());
+            self.welded.places(self.welded.triangles[face as usize]);
         (0..=LATTICE).flat_map(move |i| {
             (0..=LATTICE - i).map(move |j| {
                 let [s, t] = [i, j].map(|n| f64::from(n) / f64::from(LATTICE));
