@@ -54,9 +54,7 @@ pub fn cloud_surface(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> R
     let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
     let mut network = match lines {
         Lines::Given(lines) => resampled(lines),
-        Lines::Found(sought) => {
-            resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?)
-        }
+        Lines::Found(sought) => resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?),
     };
     drop(search);
     let lost = std::mem::take(&mut network.far);

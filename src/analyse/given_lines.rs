@@ -96,12 +96,7 @@ fn exact(welded: &Welded, edges: &Edges, segments: &[[DVec3; 2]]) -> Vec<Option<
 
 /// The edges that are segments, and those that pass some other segment closely with their ends and
 /// their middle.
-fn followed(
-    welded: &Welded,
-    edges: &Edges,
-    segments: &[[DVec3; 2]],
-    exact: &[Option<usize>],
-) -> Vec<bool> {
+fn followed(welded: &Welded, edges: &Edges, segments: &[[DVec3; 2]], exact: &[Option<usize>]) -> Vec<bool> {
     let mut followed = vec![false; edges.edges.len()];
     exact.iter().flatten().for_each(|&edge| followed[edge] = true);
     let loose = segments.iter().zip(exact).filter(|(_, exact)| exact.is_none());

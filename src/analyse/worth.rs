@@ -158,8 +158,7 @@ impl Patches<'_> {
     /// Places spread over a face, its corners among them: a facet has no vertices inside, and may
     /// be as large as the patch.
     fn lattice(&self, face: u32) -> impl Iterator<Item = DVec3> {
-        let [a, b, c] =
-            self.welded.places(self.welded.triangles[face as usize]);
+        let [a, b, c] = self.welded.places(self.welded.triangles[face as usize]);
         (0..=LATTICE).flat_map(move |i| {
             (0..=LATTICE - i).map(move |j| {
                 let [s, t] = [i, j].map(|n| f64::from(n) / f64::from(LATTICE));
