@@ -19,7 +19,7 @@ use crate::analyse::cloud_creases::{Sought, cloud_creases};
 use crate::analyse::cloud_surface::{Lines, cloud_surface};
 use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
 use crate::analyse::surface::Surface;
-use crate::analyse::thin::{Reach, thin};
+use crate::analyse::thin::Reach;
 use crate::analyse::worth::Worth;
 use crate::error::{Error, Result};
 pub use crate::fit::clip::Clips;
@@ -222,9 +222,10 @@ fn piece_length(max_error: f64, diagonal: f64) -> f64 {
     PIECE_SHARE * expected_radius(max_error, diagonal)
 }
 
-/// A point of a cloud stands for others within this many error bounds: a fraction of the
-/// radius of the splats that a smooth surface needs, where some twenty points are fitted.
-const THIN_RADIUS: f64 = 1.5;
+/// How far points of a cloud stand for others: over areas as wide as a mesh's pieces are long.
+fn thinning(max_error: f64, diagonal: f64) -> Reach {
+    Reach { radius: 0.5 * piece_length(max_error, diagonal), offset: THIN_OFFSET * max_error }
+}
 
 /// A point of a cloud stands for others whose distance from its tangent plane is below this
 /// share of the error bound, so that a fit to it is as good as one to all of them.
@@ -267,10 +268,10 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
                 Edges::Auto => Lines::Found(sought(cloud, options.edge_angle, max_error)),
                 Edges::Given(_) | Edges::None => Lines::Given(&given),
             };
-            let found = cloud_surface(cloud, options.normals.into(), lines)?;
+            let reach = thinning(max_error, diagonal);
+            let found = cloud_surface(cloud, options.normals.into(), lines, Some(reach))?;
             let features = Found { feature_edges: found.edges, matched: found.matched };
-            let reach = Reach { radius: THIN_RADIUS * max_error, offset: THIN_OFFSET * max_error };
-            Ok(Analysed { surface: thin(found.surface, reach), features, left_out: found.left_out })
+            Ok(Analysed { surface: found.surface, features, left_out: found.left_out })
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Spreads the low 21 bits of a number so that two zero bits follow each.
+/// Spreads the low [`MORTON_LEVELS`] bits of a number so that two zero bits follow each.
 fn spread(mut x: u64) -> u64 {
     x &= 0x1f_ffff;
     x = (x | (x << 32)) & 0x001f_0000_0000_ffff;
@@ -13,10 +13,16 @@ fn spread(mut x: u64) -> u64 {
     (x | (x << 2)) & 0x1249_2492_4924_9249
 }
 
-/// The Morton code of a position in `[-1, 1]³`, 21 bits a coordinate.
+/// Bits of a Morton code that each coordinate has.
+pub const MORTON_LEVELS: u32 = 21;
+
+/// The width of the cells that Morton codes number, model units.
+pub const MORTON_UNIT: f64 = 2.0 / (1_u32 << MORTON_LEVELS) as f64;
+
+/// The Morton code of a position in `[-1, 1]³`.
 #[must_use]
 pub fn morton(p: Vec3) -> u64 {
-    let cell = |x: f32| ((f64::from(x) + 1.0) * f64::from(1 << 20)) as u64;
+    let cell = |x: f32| ((f64::from(x) + 1.0) / MORTON_UNIT) as u64;
     spread(cell(p.x).min(0x1f_ffff))
         | spread(cell(p.y).min(0x1f_ffff)) << 1
         | spread(cell(p.z).min(0x1f_ffff)) << 2

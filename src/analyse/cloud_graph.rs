@@ -115,6 +115,11 @@ pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Option<f64> {
         *corner = DVec2::new(x, y) * reach;
     }
     for site in sites.iter().take(NEAREST) {
+        // A site at more than twice the distance of every corner cuts none of them off.
+        let farthest = cell[..count].iter().map(|corner| corner.length_squared()).fold(0.0, f64::max);
+        if site.length_squared() > 4.0 * farthest {
+            continue;
+        }
         // Places nearer to the site lie beyond the bisector, on its far side.
         let beyond = |p: DVec2| p.dot(*site) - 0.5 * site.length_squared();
         let mut cut = [DVec2::ZERO; CORNERS];

@@ -40,18 +40,15 @@ pub fn distinct(cloud: &Cloud) -> Distinct {
         }
         found.positions.push(position(same[0]));
         same.sort_unstable_by_key(|&v| said(v));
-        let mut different = same.to_vec();
-        different.dedup_by_key(|v| said(*v));
+        // The first of those that say the same; most are alone.
+        let different = || same.chunk_by(|&a, &b| said(a) == said(b)).map(|alike| alike[0]);
         if !cloud.normals.is_empty() {
-            let sum: DVec3 = different.iter().map(|&v| normal(v).as_dvec3()).sum();
-            found.normals.push(if different.len() == 1 {
-                normal(different[0])
-            } else {
-                sound(sum.as_vec3())
-            });
+            let sum: DVec3 = different().map(|v| normal(v).as_dvec3()).sum();
+            let alike = different().nth(1).is_none();
+            found.normals.push(if alike { normal(same[0]) } else { sound(sum.as_vec3()) });
         }
         if !cloud.colors.is_empty() {
-            found.colors.push(mean(different.iter().map(|&v| color(v))));
+            found.colors.push(mean(different().map(color)));
         }
     }
     found

@@ -2,9 +2,11 @@
 //!
 //! Both kinds of input end as one [`surface::Surface`], so that nothing below asks which it was.
 
+mod blocks;
 pub mod canonical;
 pub mod chains;
 pub mod cloud_creases;
+mod cloud_assembly;
 pub mod cloud_graph;
 pub mod cloud_normals;
 pub mod cloud_surface;
@@ -12,6 +14,7 @@ pub mod creases;
 mod curved;
 pub mod distinct;
 pub mod edges;
+mod eigen;
 pub mod given_lines;
 pub mod line_cut;
 pub mod line_network;

@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 
+use super::blocks::Blocks;
 use super::surface::NONE;
 use crate::error::{Error, Result};
 
@@ -18,6 +19,9 @@ const TIE: f64 = 1e-5;
 
 /// Ties are kept, in whatever choice the search made, where fewer would remain otherwise.
 const FEWEST: usize = 8;
+
+/// Points asked for: itself, those kept, and one more that shows whether the last is tied.
+pub(super) const ASKED: usize = NEAREST + 2;
 
 /// For each point its nearest others, nearest first, filled up with [`NONE`].
 pub type Nearest = Vec<[u32; NEAREST]>;
@@ -41,19 +45,20 @@ impl Search {
         Ok(Self { tree, points })
     }
 
-    /// The nearest others of each point.
+    /// The nearest others of each point, fastest for points along the Morton curve.
     #[must_use]
     pub fn nearest(&self) -> Nearest {
-        // Itself, those kept, and one more that shows whether the last is tied.
-        let asked = NonZeroUsize::MIN.saturating_add(NEAREST + 1);
-        self.points
-            .par_iter()
-            .enumerate()
-            .map(|(index, point)| {
-                let found = self.tree.query(point).nearest_n::<SquaredEuclidean<f32>>(asked).execute();
-                chosen(&self.points, index as u32, found.iter().map(|found| found.item))
-            })
-            .collect()
+        let all = 0..self.points.len() as u32;
+        let blocks = Blocks::new(&self.points, self);
+        blocks.map_or_else(|| all.into_par_iter().map(|n| self.others(n)).collect(), |blocks| blocks.nearest())
+    }
+
+    /// The nearest others of one point.
+    pub(super) fn others(&self, index: u32) -> [u32; NEAREST] {
+        const COUNT: NonZeroUsize = NonZeroUsize::MIN.saturating_add(ASKED - 1);
+        let point = &self.points[index as usize];
+        let found = self.tree.query(point).nearest_n::<SquaredEuclidean<f32>>(COUNT).execute();
+        chosen(&self.points, index, found.iter().map(|found| found.item))
     }
 
     /// The `count` points nearest to a place, nearest first; all where there are fewer.
@@ -79,12 +84,16 @@ impl Search {
 }
 
 /// The others among those found, nearest first, without the last ones if they are tied.
-fn chosen(positions: &[[f32; 3]], index: u32, found: impl Iterator<Item = u32>) -> [u32; NEAREST] {
+pub(super) fn chosen(
+    positions: &[[f32; 3]],
+    index: u32,
+    found: impl Iterator<Item = u32>,
+) -> [u32; NEAREST] {
     let at = |n: u32| Vec3::from(positions[n as usize]).as_dvec3();
     let here: DVec3 = at(index);
-    let mut others = [(f64::INFINITY, NONE); NEAREST + 2];
+    let mut others = [(f64::INFINITY, NONE); ASKED];
     let mut count = 0;
-    for other in found.filter(|&other| other != index).take(NEAREST + 2) {
+    for other in found.filter(|&other| other != index).take(ASKED) {
         others[count] = (at(other).distance_squared(here), other);
         count += 1;
     }
@@ -136,7 +145,15 @@ mod tests {
         let lattice: Vec<Vec3> =
             (0..900).map(|n| Vec3::new((n % 30) as f32, (n / 30) as f32, 0.0) / 30.0).collect();
         let line: Vec<Vec3> = (0..5).map(|n| Vec3::X * n as f32 / 5.0).collect();
-        for points in [random, lattice, line, vec![Vec3::ZERO]] {
+        let sorted = |points: &[Vec3]| {
+            let order = super::super::canonical::order(points);
+            order.into_iter().map(|n| points[n as usize]).collect::<Vec<Vec3>>()
+        };
+        // A dense sheet beside a sparse one, both with places where they end.
+        let dense = (0..1500).map(|n| Vec3::new(value(5 * n), value(5 * n + 1), 0.01 * value(5 * n + 2)));
+        let dense = sorted(&dense.map(|p| 0.1 * p + 0.3 * Vec3::Z).chain(random.clone()).collect::<Vec<_>>());
+        let grid = sorted(&lattice);
+        for points in [random, lattice, line, vec![Vec3::ZERO], dense, grid] {
             let found = Search::new(&points).unwrap().nearest();
             for (index, row) in found.iter().enumerate() {
                 let distance = |n: u32| points[n as usize].as_dvec3().distance(points[index].as_dvec3());

@@ -1,9 +1,13 @@
 //! The surface as the stages below see it: points with neighbours, pieces to cover, borders.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 /// Marks the absence of a point.
 pub const NONE: u32 = u32::MAX;
+
+/// Rows that one thread builds at a time.
+const BLOCK: u32 = 1 << 12;
 
 /// Lists of indices, one a row, stored end to end.
 #[derive(Clone, Debug, Default)]
@@ -43,20 +47,14 @@ impl Rows {
         sorted
     }
 
-    /// `rows` rows, the first `count` of which hold their own number, the others nothing.
-    #[must_use]
-    pub fn singles(rows: u32, count: u32) -> Self {
-        Self { starts: (0..=rows).map(|row| row.min(count)).collect(), items: (0..count).collect() }
-    }
-
-    /// Rows of the indices of `owner`, each in the row that it names.
+    /// Rows of the indices of `owner`, each in the row that it names, if it names one.
     #[must_use]
     pub fn grouped(rows: usize, owner: &[u32]) -> Self {
-        Self::placed(rows, || owner.iter().copied().zip(0_u32..))
+        Self::placed(rows, || owner.iter().copied().zip(0_u32..).filter(|&(row, _)| row != NONE))
     }
 
     /// Rows of `(row, item)` pairs, each row in their order; `pairs` is gone through twice.
-    fn placed<I: Iterator<Item = (u32, u32)>>(rows: usize, pairs: impl Fn() -> I) -> Self {
+    pub fn placed<I: Iterator<Item = (u32, u32)>>(rows: usize, pairs: impl Fn() -> I) -> Self {
         let starts = starts(rows, pairs().map(|(row, _)| row));
         let (mut items, mut ends) = (vec![0_u32; starts[rows] as usize], starts.clone());
         for (row, item) in pairs() {
@@ -66,29 +64,47 @@ impl Rows {
         Self { starts, items }
     }
 
-    /// Rows of given items.
+    /// `rows` rows of what `fill` adds to a list for each, ascending and freed of repeats.
     #[must_use]
-    pub fn from_lists(lists: &[Vec<u32>]) -> Self {
-        let lengths: Vec<u32> = lists.iter().map(|list| list.len() as u32).collect();
-        Self { items: lists.concat(), ..Self::consecutive(&lengths) }
+    pub fn built(rows: u32, fill: impl Fn(u32, &mut Vec<u32>) + Sync) -> Self {
+        let block = |block: u32| {
+            let (mut lengths, mut items, mut row) = (Vec::new(), Vec::new(), Vec::new());
+            for index in block * BLOCK..rows.min((block + 1) * BLOCK) {
+                fill(index, &mut row);
+                row.sort_unstable();
+                row.dedup();
+                lengths.push(row.len() as u32);
+                items.append(&mut row);
+            }
+            (lengths, items)
+        };
+        let (lengths, items): (Vec<_>, Vec<_>) =
+            (0..rows.div_ceil(BLOCK)).into_par_iter().map(block).unzip();
+        Self { starts: ends(&lengths.concat()), items: items.concat() }
     }
 
     /// Rows of given lengths that hold `0, 1, 2` and so on.
     #[must_use]
     pub fn consecutive(lengths: &[u32]) -> Self {
-        let mut starts = vec![0_u32; lengths.len() + 1];
-        for (row, length) in lengths.iter().enumerate() {
-            starts[row + 1] = starts[row] + length;
-        }
+        let starts = ends(lengths);
         Self { items: (0..starts[lengths.len()]).collect(), starts }
     }
 
-    /// The items of a row, ascending.
+    /// The items of a row.
     #[must_use]
     pub fn row(&self, row: u32) -> &[u32] {
         let row = row as usize;
         &self.items[self.starts[row] as usize..self.starts[row + 1] as usize]
     }
+}
+
+/// Where rows of these lengths start, and the last ends.
+fn ends(lengths: &[u32]) -> Vec<u32> {
+    let mut starts = vec![0_u32; lengths.len() + 1];
+    for (row, length) in lengths.iter().enumerate() {
+        starts[row + 1] = starts[row] + length;
+    }
+    starts
 }
 
 /// Where each row starts, and the last ends, if they hold one item each time they are named.
@@ -214,10 +230,16 @@ mod tests {
             (0..4).map(|row| rows.row(row).to_vec()).collect::<Vec<_>>(),
             [vec![1, 2], vec![0, 2], vec![0, 1], vec![]]
         );
-        let singles = Rows::singles(3, 2);
-        assert_eq!(
-            (0..3).map(|row| singles.row(row).to_vec()).collect::<Vec<_>>(),
-            [vec![0], vec![1], vec![]]
-        );
+    }
+
+    #[test]
+    fn built_rows_are_sorted_whatever_the_block() {
+        let rows = Rows::built(3 * BLOCK + 7, |row, list| list.extend([row % 5, 9, row % 3, 9]));
+        for row in 0..3 * BLOCK + 7 {
+            let mut expected = vec![row % 5, row % 3, 9];
+            expected.sort_unstable();
+            expected.dedup();
+            assert_eq!(rows.row(row), expected);
+        }
     }
 }

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::grow::Grower;
 use super::region::Region;
 use crate::analyse::surface::Surface;
-use crate::fit::pose::Pose;
+use crate::fit::pose::{Pose, miss};
 use crate::model::clip_curve::{ClipCurve, Conic, border_point, turn};
 
 /// Fewest and most places looked at around the rim.
@@ -25,10 +25,19 @@ const MOST_PLACES: f64 = 1024.0;
 /// Directions in which a place is compared with its surroundings.
 const AROUND: usize = 8;
 
-/// A cloud's surface is there if a point of it lies within this many of its margins, and the
+/// A cloud's surface is there if a point looked at lies within this many of its margins, and the
 /// domain's pad. Every place of the surface has a point within one, but that point need not
 /// be joined to those inside the domain.
 const CLOUD_REACH: f64 = 1.5;
+
+/// How closely a cloud's surface is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// By the points that stand for others, each as far as it does.
+    Coarse,
+    /// By every point.
+    Fine,
+}
 
 /// Whether, at every place around the rim that is not cut away, the surface lies within the
 /// budget for rims.
@@ -40,13 +49,18 @@ pub fn backed(
     curvature: DVec2,
     clips: &[ClipCurve],
     region: &Region,
+    look: Look,
 ) -> bool {
     let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(outer)).collect();
     let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
     let reach = grower.budget.clip.outset + 2.0 * grower.budget.clip.miss;
     // Curves pass somewhat outside their lines: just inside a curve there is no surface.
     let beside_cut = |uv: DVec2| directions(AROUND).any(|direction| cut(uv + reach * direction));
-    let below = Below::new(grower.surface, pose, region);
+    let below = match (grower.surface.spots.is_empty(), look) {
+        (true, _) => Below::triangles(grower.surface, pose, region),
+        (false, Look::Coarse) => Below::points(grower.surface, pose, region),
+        (false, Look::Fine) => Below::spots(grower, pose, outer, curvature, region),
+    };
     let perimeter = std::f64::consts::PI * outer.element_sum();
     let count = (perimeter / (APART * grower.budget.rim)).clamp(PLACES.0, PLACES.1) as usize;
     if !below.points.is_empty() {
@@ -80,30 +94,51 @@ fn directions(count: usize) -> impl Iterator<Item = DVec2> {
 }
 
 /// The surface around a region's rim, in splat coordinates.
+#[derive(Default)]
 struct Below {
     triangles: Vec<[DVec3; 3]>,
-    /// Single points and how far each stands for the surface around it.
+    /// Single points and how far from each the surface goes on.
     points: Vec<(DVec2, f64)>,
 }
 
 impl Below {
-    fn new(surface: &Surface, pose: &Pose, region: &Region) -> Self {
-        let local = |point: u32| pose.to_local(surface.point(point));
-        let mut pieces: Vec<u32> = region
-            .rim
-            .iter()
-            .flat_map(|&(_, outside)| surface.pieces_of.row(outside).iter().copied())
-            .collect();
+    /// The triangles of a mesh.
+    fn triangles(surface: &Surface, pose: &Pose, region: &Region) -> Self {
+        let outside = region.rim.iter().map(|&(_, outside)| outside);
+        let mut pieces: Vec<u32> =
+            outside.flat_map(|point| surface.pieces_of.row(point).iter().copied()).collect();
         pieces.sort_unstable();
         pieces.dedup();
         let corners = pieces.iter().map(|&piece| surface.pieces[piece as usize]);
-        let triangles = corners.filter(|[a, b, _]| a != b).map(|corners| corners.map(local)).collect();
-        let points =
-            region.members.iter().map(|member| member.point).chain(region.rim.iter().map(|rim| rim.1));
-        let single = points.map(|point| (point, f64::from(surface.margin[point as usize])));
-        let points =
-            single.filter(|&(_, margin)| margin > 0.0).map(|(p, m)| (local(p).truncate(), m)).collect();
-        Self { triangles, points }
+        let local = |point: u32| pose.to_local(surface.point(point));
+        Self { triangles: corners.map(|corners| corners.map(local)).collect(), ..Self::default() }
+    }
+
+    /// The points of a cloud that stand for others, and themselves.
+    fn points(surface: &Surface, pose: &Pose, region: &Region) -> Self {
+        let with_margin = region.reached().map(|point| (point, f64::from(surface.margin[point as usize])));
+        let local = |point: u32| pose.to_local(surface.point(point)).truncate();
+        let points = with_margin.filter(|&(_, margin)| margin > 0.0);
+        let points = points.map(|(point, margin)| (local(point), CLOUD_REACH * margin));
+        Self { points: points.collect(), ..Self::default() }
+    }
+
+    /// All points of a cloud that may come near the rim. What lies off the quadric by more than a rim
+    /// may reaches less far to the side.
+    fn spots(grower: &Grower, pose: &Pose, outer: DVec2, curvature: DVec2, region: &Region) -> Self {
+        let surface = grower.surface;
+        let near = region.reached().filter(|&point| {
+            let reach = CLOUD_REACH * f64::from(surface.margin[point as usize]) + grower.budget.pad;
+            least_distance(pose.to_local(surface.point(point)).truncate() / outer, outer) <= reach
+        });
+        let spots = near.flat_map(|point| surface.pieces_of.row(point)).filter_map(|&spot| {
+            let spot = surface.spots[spot as usize];
+            let local = pose.to_local(spot.position.as_dvec3());
+            let reach = CLOUD_REACH * f64::from(spot.margin);
+            let off = (miss(curvature, local) - grower.budget.rim).max(0.0);
+            (off < reach).then(|| (local.truncate(), (reach * reach - off * off).sqrt()))
+        });
+        Self { points: spots.collect(), ..Self::default() }
     }
 
     /// Whether a triangle lies within `budget` of a height over a place.
@@ -119,16 +154,15 @@ impl Below {
     ///
     /// Places lie about a margin apart, so that nothing wider than the reach slips between.
     fn near_rim(&self, outer: DVec2, pad: f64) -> Vec<bool> {
-        let finest = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+        let finest = self.points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min) / CLOUD_REACH;
         let around = std::f64::consts::TAU * outer.max_element() / (finest + pad);
         let count = around.clamp(PLACES.0, MOST_PLACES) as usize;
         let rim: Vec<DVec2> = directions(count).map(|direction| direction * outer).collect();
         let mut near = vec![false; count];
-        for &(point, margin) in &self.points {
-            let reach = CLOUD_REACH * margin + pad;
+        for &(point, reach) in &self.points {
+            let reach = reach + pad;
             let flat = point / outer;
-            // No place of the rim is nearer to the point than this.
-            if (1.0 - flat.length()).abs() * outer.min_element() > reach {
+            if least_distance(flat, outer) > reach {
                 continue;
             }
             let in_reach = |n: &usize| rim[*n].distance_squared(point) <= reach * reach;
@@ -144,6 +178,11 @@ impl Below {
         }
         near
     }
+}
+
+/// No place of the rim is nearer than this to a place, given divided by the radii.
+fn least_distance(flat: DVec2, outer: DVec2) -> f64 {
+    (1.0 - flat.length()).abs() * outer.min_element()
 }
 
 /// Where the rim passes nearest to a place, as angles of the unit circle that it is when

@@ -62,10 +62,13 @@ pub fn candidates(
             }
             at += 1;
         }
-        let grown: Vec<Option<Candidate>> =
-            batch.par_iter().map(|&piece| regions.with(|region| grower.grow(piece, region))).collect();
-        for candidate in grown.into_iter().flatten() {
-            mark_core(grower, &candidate, core_share(effort), &mut done);
+        let grow = |&piece: &u32| {
+            let candidate = regions.with(|region| grower.grow(piece, region))?;
+            Some((core(grower, &candidate, core_share(effort)), candidate))
+        };
+        let grown: Vec<Option<(Vec<u32>, Candidate)>> = batch.par_iter().map(grow).collect();
+        for (core, candidate) in grown.into_iter().flatten() {
+            core.into_iter().for_each(|piece| done[piece as usize] = true);
             found.push(candidate);
         }
         advance(at);
@@ -73,11 +76,11 @@ pub fn candidates(
     found
 }
 
-fn mark_core(grower: &Grower, candidate: &Candidate, share: f64, done: &mut [bool]) {
-    for &piece in &candidate.pieces {
-        let uv = candidate.splat.to_local(grower.surface.middle(piece)).truncate();
-        if candidate.splat.ellipse(uv) <= share * share {
-            done[piece as usize] = true;
-        }
-    }
+/// The pieces of a candidate whose middles lie within a share of its radii.
+fn core(grower: &Grower, candidate: &Candidate, share: f64) -> Vec<u32> {
+    let inside = |piece: &u32| {
+        let uv = candidate.splat.to_local(grower.surface.middle(*piece)).truncate();
+        candidate.splat.ellipse(uv) <= share * share
+    };
+    candidate.pieces.iter().copied().filter(inside).collect()
 }

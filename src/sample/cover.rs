@@ -117,7 +117,7 @@ impl Cover {
 
     /// Whether a candidate covers all that no other splat covers than these.
     pub(super) fn serves(&self, these: &[usize], candidate: &Candidate) -> bool {
-        self.own(these).iter().all(|piece| candidate.pieces.binary_search(piece).is_ok())
+        candidate.covers(self.own(these))
     }
 
     /// Takes a candidate for some of the chosen, which the caller takes off the list.
@@ -182,8 +182,9 @@ fn greedy(candidates: &[Candidate], areas: &[f64], times: &mut [u32]) -> Vec<usi
         // A piece without area still has to be covered.
         new.map(|&p| areas[p as usize].max(f64::MIN_POSITIVE)).sum::<f64>() / cost(&candidate.splat)
     };
-    let mut heap: BinaryHeap<Gain> =
-        (0..candidates.len()).map(|index| Gain { gain: gain(index, times), index }).collect();
+    let first = (0..candidates.len()).into_par_iter();
+    let first: Vec<Gain> = first.map(|index| Gain { gain: gain(index, times), index }).collect();
+    let mut heap = BinaryHeap::from(first);
     let mut chosen = Vec::new();
     while let Some(top) = heap.pop() {
         let now = Gain { gain: gain(top.index, times), index: top.index };

@@ -52,7 +52,7 @@ impl Need {
         let seeds = grower.surface.pieces[piece as usize];
         let least = self.domain(grower, &seeds, region)?;
         let settled = |domain: Domain, region: &mut Region| {
-            settle(grower, domain, &seeds, piece, region).filter(|found| self.within(&found.pieces))
+            settle(grower, domain, &seeds, piece, region).filter(|found| found.covers(self.pieces.iter().copied()))
         };
         let found = settled(least.clone(), region)?;
         // More than is needed leaves less for others to cover alone.
@@ -96,10 +96,5 @@ impl Need {
     fn central(&self, surface: &Surface) -> u32 {
         let far = |piece: u32| surface.middle(piece).distance_squared(self.pose.center);
         self.pieces.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b))).unwrap_or(0)
-    }
-
-    /// Whether all of it is among these pieces, ascending.
-    fn within(&self, pieces: &[u32]) -> bool {
-        self.pieces.iter().all(|piece| pieces.binary_search(piece).is_ok())
     }
 }

@@ -6,7 +6,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::backing::backed;
+use super::backing::{Look, backed};
 use super::budget::Budget;
 use super::outline::{Outline, outlines};
 use super::region::{Member, Region};
@@ -194,7 +194,7 @@ impl Grower<'_> {
             return Err(Stop::Fit);
         }
         let clips = self.clips(&fitted.pose, outer, Care::Feasible, region)?;
-        if !backed(self, &fitted.pose, outer, fitted.curvature, &clips, region) {
+        if !backed(self, &fitted.pose, outer, fitted.curvature, &clips, region, Look::Coarse) {
             return Err(Stop::Bare);
         }
         // The seeds come first of the members.

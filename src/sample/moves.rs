@@ -90,13 +90,10 @@ fn pass(grower: &Grower, regions: &Regions, cover: &mut Cover, partners: usize) 
     cover.drop_redundant();
 }
 
-/// For each piece, the chosen splats that cover it.
+/// For each piece, the chosen splats that cover it, in the order in which they were.
 fn owners(cover: &Cover) -> Rows {
-    let pairs = cover
-        .chosen
-        .iter()
-        .flat_map(|&index| cover.candidates[index].pieces.iter().map(move |&piece| (piece, index as u32)));
-    Rows::from_pairs(cover.times.len(), pairs.collect())
+    let of = |&index: &usize| cover.candidates[index].pieces.iter().map(move |&piece| (piece, index as u32));
+    Rows::placed(cover.times.len(), || cover.chosen.iter().flat_map(of))
 }
 
 /// What a search for a move looks at.

@@ -33,6 +33,11 @@ impl Region {
         Self { members: Vec::new(), rim: Vec::new(), marks: Marks::new(points) }
     }
 
+    /// The points inside the ellipse and just outside.
+    pub fn reached(&self) -> impl Iterator<Item = u32> + '_ {
+        self.members.iter().map(|member| member.point).chain(self.rim.iter().map(|&(_, outside)| outside))
+    }
+
     /// Walks from the seeds over all points inside the ellipse.
     ///
     /// False where a seed lies outside. A surface that

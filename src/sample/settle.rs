@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::backing::backed;
+use super::backing::{Look, backed};
 use super::facet::farthest;
 use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
@@ -93,7 +93,7 @@ fn finish(
     let kept = region.gather(grower.surface, &pose, splat.radii, seeds)
         && grower.keeps(&pose, splat.radii, splat.curvature, ROUNDED_SLACK, region);
     splat.clips = kept.then(|| grower.clips(&pose, splat.radii, Care::Nearest, region).ok())??;
-    if !backed(grower, &pose, splat.radii, splat.curvature, &splat.clips, region) {
+    if !backed(grower, &pose, splat.radii, splat.curvature, &splat.clips, region, Look::Fine) {
         return None;
     }
     let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
@@ -112,6 +112,14 @@ struct Covering<'a> {
     conics: Vec<Conic>,
     /// Radii of the ellipse that is trusted to cover.
     trusted: DVec2,
+}
+
+impl Candidate {
+    /// Whether it covers all of these pieces, ascending.
+    pub(super) fn covers(&self, pieces: impl IntoIterator<Item = u32>) -> bool {
+        let mut own = self.pieces.iter();
+        pieces.into_iter().all(|piece| own.find(|own| **own >= piece) == Some(&piece))
+    }
 }
 
 impl Covering<'_> {
@@ -161,10 +169,11 @@ impl Covering<'_> {
     /// The spots that are covered, ascending; `None` if the splat strays from one it reaches.
     fn spots(&self, region: &Region) -> Option<Vec<u32>> {
         let surface = self.grower.surface;
-        let inside = region.members.iter().map(|member| member.point);
-        let around = region.rim.iter().map(|&(_, outside)| outside);
+        let mut points: Vec<u32> = region.reached().collect();
+        points.sort_unstable();
         let mut pieces = Vec::new();
-        for &piece in inside.chain(around).flat_map(|point| surface.pieces_of.row(point)) {
+        // The pieces of a cloud are numbered in the order of the points that stand for them.
+        for &piece in points.into_iter().flat_map(|point| surface.pieces_of.row(point)) {
             let spot = surface.spots[piece as usize];
             let local = self.splat.to_local(spot.position.as_dvec3());
             if self.splat.ellipse(local.truncate()) > 1.0 {
@@ -179,7 +188,6 @@ impl Covering<'_> {
                 pieces.push(piece);
             }
         }
-        pieces.sort_unstable();
         Some(pieces)
     }
 }
