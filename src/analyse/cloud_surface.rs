@@ -92,8 +92,14 @@ pub fn cloud_surface(
     drop((nearest, spacing));
     let place = |v: &u32| outlier[points.place[*v as usize] as usize];
     let left_out = (0..points.place.len() as u32).filter(place).collect();
-    let sheet = Sheet { positions: &points.positions, normals: &normals.normals, joined: &joined };
-    let owner = owners(&sheet, &outlier, reach);
+    let sheet = Sheet {
+        positions: &points.positions,
+        normals: &normals.normals,
+        joined: &joined,
+        outlier: &outlier,
+        on_line: &on_line,
+    };
+    let owner = owners(&sheet, reach);
     let surface = Assembly::new(&sheet, &points.colors, &owner, cut.as_ref()).surface(joins);
     let (edges, length) = cut.as_ref().map_or((0, 0.0), LineCut::found);
     let matched = match lines {

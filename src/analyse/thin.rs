@@ -39,31 +39,36 @@ pub struct Sheet<'a> {
     pub normals: &'a [Vec3],
     /// What each is joined to.
     pub joined: &'a [Joined],
+    /// Which belong to no surface.
+    pub outlier: &'a [bool],
+    /// Which are joined to a feature line. They stand for themselves alone: the sheet ends there, and
+    /// splats are cut as these points say.
+    pub on_line: &'a [bool],
 }
 
 /// For each point the one that stands for it, [`NONE`] for an outlier; all for themselves where
 /// `reach` is none, and where little would be saved.
 #[must_use]
-pub fn owners(sheet: &Sheet<'_>, outlier: &[bool], reach: Option<Reach>) -> Vec<u32> {
+pub fn owners(sheet: &Sheet<'_>, reach: Option<Reach>) -> Vec<u32> {
     let themselves = || {
-        let all = (0_u32..).zip(outlier);
+        let all = (0_u32..).zip(sheet.outlier);
         all.map(|(point, &outlier)| if outlier { NONE } else { point }).collect::<Vec<u32>>()
     };
     let Some(reach) = reach else { return themselves() };
-    let claimed = claims(sheet, outlier, reach);
+    let claimed = claims(sheet, reach);
     let kept = (0_u32..).zip(&claimed).filter(|&(point, &by)| by == point).count();
     if kept as f64 > WORTHWHILE * claimed.len() as f64 { themselves() } else { claimed }
 }
 
 /// For each point the one that stands for it, itself perhaps.
-fn claims(sheet: &Sheet<'_>, outlier: &[bool], reach: Reach) -> Vec<u32> {
+fn claims(sheet: &Sheet<'_>, reach: Reach) -> Vec<u32> {
     let mut claimed = vec![NONE; sheet.positions.len()];
     claimed.par_chunks_mut(BLOCK).enumerate().for_each(|(block, claimed)| {
         let first = block * BLOCK;
         let mut reached = Vec::new();
         for at in 0..claimed.len() {
-            if claimed[at] == NONE && !outlier[first + at] {
-                claim(sheet, outlier, reach, [first, at], claimed, &mut reached);
+            if claimed[at] == NONE && !sheet.outlier[first + at] {
+                claim(sheet, reach, [first, at], claimed, &mut reached);
             }
         }
     });
@@ -73,7 +78,6 @@ fn claims(sheet: &Sheet<'_>, outlier: &[bool], reach: Reach) -> Vec<u32> {
 /// Claims what a point reaches, in a block of points that starts at `first`.
 fn claim(
     sheet: &Sheet<'_>,
-    outlier: &[bool],
     reach: Reach,
     [first, at]: [usize; 2],
     claimed: &mut [u32],
@@ -81,13 +85,17 @@ fn claim(
 ) {
     let point = first + at;
     claimed[at] = point as u32;
+    if sheet.on_line[point] {
+        return;
+    }
     let (center, normal) = (sheet.positions[point], sheet.normals[point]);
     let stands_for = |other: usize| {
         let way = (sheet.positions[other] - center).as_dvec3();
         way.length_squared() <= reach.radius * reach.radius
             && way.dot(normal.as_dvec3()).abs() <= reach.offset
             && sheet.normals[other].dot(normal) >= AGREE
-            && !outlier[other]
+            && !sheet.outlier[other]
+            && !sheet.on_line[other]
     };
     reached.clear();
     reached.push(point as u32);
