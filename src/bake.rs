@@ -298,17 +298,21 @@ fn sought(cloud: &Cloud, edge_angle: f64, max_error: f64) -> Sought {
 /// The lines along which a bake with these options cuts its splats, model units: feature lines,
 /// and a mesh's open borders, where splats are cut as well.
 ///
-/// A mesh's lines come as segments of two points, given ones whether the input has an edge there or
-/// not, but for those along which a mesh is smooth. `edge_angle` is in degrees; `max_error`, in model
-/// units, decides which found lines are too short to count. `None` where there are no lines: for a
-/// smooth cloud, for a smooth closed mesh, and for [`Edges::None`].
-#[must_use]
+/// A mesh's lines come as segments of two points. Lines given with a mesh are moved onto the edges
+/// they mean where they lie a little off these, kept as they are where they mean none (they are lost,
+/// and cut nothing), and left out where the mesh is smooth; those given with a cloud come as they are.
+/// `edge_angle` is in degrees; `max_error`, in model units, decides which found lines are too short to
+/// count. `None` where there are no lines: for a smooth cloud, for a smooth closed mesh, and for
+/// [`Edges::None`].
+///
+/// # Errors
+/// As [`cloud_creases`], for the found lines of a cloud.
 pub fn feature_lines(
     input: &Input,
     edges: &Edges,
     edge_angle: f64,
     max_error: f64,
-) -> Option<Vec<Vec<DVec3>>> {
+) -> Result<Option<Vec<Vec<DVec3>>>> {
     let lines = match (input, edges) {
         (_, Edges::None) => Vec::new(),
         (Input::Mesh(mesh), _) => {
@@ -316,12 +320,9 @@ pub fn feature_lines(
             cut_lines(mesh, &features(mesh, edges, edge_angle, max_error), &making)
         }
         (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
-        (Input::Cloud(cloud), Edges::Auto) => {
-            // A search that does not take the points fails the bake: it has no lines to tell of.
-            cloud_creases(cloud, &sought(cloud, edge_angle, max_error)).unwrap_or_default()
-        }
+        (Input::Cloud(cloud), Edges::Auto) => cloud_creases(cloud, &sought(cloud, edge_angle, max_error))?,
     };
-    (!lines.is_empty()).then_some(lines)
+    Ok((!lines.is_empty()).then_some(lines))
 }
 
 /// Lines in model units.

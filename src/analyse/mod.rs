@@ -24,6 +24,8 @@ pub mod mesh_surface;
 pub mod nearest;
 pub mod orient;
 pub mod outliers;
+#[cfg(test)]
+pub(crate) mod planted;
 pub mod refine;
 pub mod segment_grid;
 pub mod sets;

@@ -83,7 +83,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::bake::scattered::{random, sphere};
+    use crate::analyse::planted::random;
+    use crate::bake::scattered::sphere;
 
     #[test]
     fn planted_scatter_is_found_and_shape_is_not_taken_for_it() {

@@ -2,18 +2,8 @@
 
 use glam::DVec3;
 
-use crate::analyse::canonical::mix;
+use crate::analyse::planted::normal;
 use crate::model::cloud::Cloud;
-
-/// Within `[-1, 1]`.
-pub(super) fn random(n: u64) -> f64 {
-    (mix(n) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
-
-/// About normal, of variance 1: the sum of twelve numbers (Irwin and Hall).
-fn normal(n: u64) -> f64 {
-    (0..12).map(|k| 0.5 * random(16 * n + k)).sum()
-}
 
 /// Points on a sphere of radius 0.8, strewn evenly, that scatter by `scatter` in every direction.
 pub(super) fn sphere(count: u64, scatter: f64) -> Cloud {

@@ -74,7 +74,7 @@ fn outcome(subject: &Subject<'_>, setting: &Setting, frames: usize) -> Result<(O
     let options = Options { edges: subject.edges.clone(), ..setting.options() };
     let delivery = deliver(subject.input, &options, &mut Silent)?;
     let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
-    let lines = feature_lines(subject.input, &options.edges, options.edge_angle, delivery.asset.max_error);
+    let lines = feature_lines(subject.input, &options.edges, options.edge_angle, delivery.asset.max_error)?;
     let measures = measure(&measure::Subject {
         bytes: &delivery.bytes,
         asset: &delivery.asset,

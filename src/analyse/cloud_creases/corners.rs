@@ -26,8 +26,16 @@ const PARALLEL: f64 = 0.26;
 /// The way from an end is taken over this many of the line's places.
 const TANGENT: usize = 4;
 
-/// Ends, or places of lines, looked at around one end.
+/// Ends looked at around one end.
 const LOOKED_AT: usize = 16;
+
+/// Places of lines that an end may run into are looked for around this share of its reach: those
+/// reached lie in the ball whose middle that is.
+const MIDWAY: f64 = 0.5;
+
+/// Places of lines looked at there. They lie a third of a size apart, so that two lines have twelve
+/// within the reach; its own, which comes from behind, has half as many.
+const PLACES_LOOKED_AT: usize = 32;
 
 /// A line of fewer places than this does not close on itself at a corner.
 const LOOP: usize = 8;
@@ -211,8 +219,8 @@ fn run_into(lines: &[Line], loose: &[End]) -> Result<Vec<(End, DVec3)>> {
         .collect();
     let Some(search) = search(all.iter().map(|(_, place)| *place))? else { return Ok(Vec::new()) };
     let hit = |end: &End| {
-        let target = end.place + 0.5 * AHEAD * end.size * end.outward;
-        let near = search.around(target.as_vec3(), 2 * LOOKED_AT).into_iter().map(|n| all[n as usize]);
+        let target = end.place + MIDWAY * AHEAD * end.size * end.outward;
+        let near = search.around(target.as_vec3(), PLACES_LOOKED_AT).into_iter().map(|n| all[n as usize]);
         let reached = near.filter(|&(line, place)| line != end.line && end.reaches(place));
         let nearest = reached.min_by(|a, b| a.1.distance(end.place).total_cmp(&b.1.distance(end.place)));
         nearest.map(|(_, place)| (*end, place))

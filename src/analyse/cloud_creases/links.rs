@@ -1,7 +1,5 @@
 //! Samples along creases linked to lines.
 
-use std::collections::BTreeSet;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -49,14 +47,17 @@ pub(super) fn chains(samples: &[Sample]) -> Result<Vec<Chain>> {
             next[b as usize][side_b] = a;
         }
     }
-    let mut unused: BTreeSet<u32> = (0..samples.len() as u32).collect();
+    let mut used = vec![false; samples.len()];
     let mut found = Vec::new();
-    while let Some(start) = unused.pop_first() {
+    for start in 0..samples.len() as u32 {
+        if std::mem::replace(&mut used[start as usize], true) {
+            continue;
+        }
         let mut line = vec![start];
-        let closed = walk(start, 0, &next, &mut unused, &mut line);
+        let closed = walk(start, 0, &next, &mut used, &mut line);
         if !closed {
             line.reverse();
-            walk(start, 1, &next, &mut unused, &mut line);
+            walk(start, 1, &next, &mut used, &mut line);
         }
         found.push(Chain { samples: line.into_iter().map(|n| samples[n as usize]).collect(), closed });
     }
@@ -64,17 +65,11 @@ pub(super) fn chains(samples: &[Sample]) -> Result<Vec<Chain>> {
 }
 
 /// Goes on along a line until it ends; whether it came back to where it started.
-fn walk(
-    start: u32,
-    mut side: usize,
-    next: &[[u32; 2]],
-    unused: &mut BTreeSet<u32>,
-    line: &mut Vec<u32>,
-) -> bool {
+fn walk(start: u32, mut side: usize, next: &[[u32; 2]], used: &mut [bool], line: &mut Vec<u32>) -> bool {
     let mut at = start;
     loop {
         let onward = next[at as usize][side];
-        if onward == NONE || !unused.remove(&onward) {
+        if onward == NONE || std::mem::replace(&mut used[onward as usize], true) {
             return onward == start;
         }
         line.push(onward);

@@ -95,17 +95,16 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::analyse::canonical::mix;
+    use crate::analyse::planted::random;
 
     #[test]
     fn a_planted_plane_is_found() {
-        let value = |n: u64| (mix(n) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
         for k in 0..50 {
-            let normal = DVec3::new(value(3 * k), value(3 * k + 1), value(3 * k + 2)).normalize();
+            let normal = DVec3::new(random(3 * k), random(3 * k + 1), random(3 * k + 2)).normalize();
             let (right, up) = normal.any_orthonormal_pair();
             let point = |n: u64| {
                 let n = 1000 * k + 3 * n;
-                5.0 * normal + value(n) * right + 0.6 * value(n + 1) * up + 0.03 * value(n + 2) * normal
+                5.0 * normal + random(n) * right + 0.6 * random(n + 1) * up + 0.03 * random(n + 2) * normal
             };
             let moments = Moments::of((0..300).map(point));
             let plane = moments.plane().unwrap();

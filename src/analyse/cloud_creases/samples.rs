@@ -34,6 +34,10 @@ const ROUGH: f64 = 0.1;
 /// than they do the surface.
 const ROUGH_NOISE: f64 = 0.7;
 
+/// The same where noise calls for more than [`FEWEST`] points: by chance their scatter differs from that
+/// of the noise by a tenth.
+const ROUGH_AMONG_MANY: f64 = 1.1;
+
 /// Points looked at around one: a few spacings in all directions.
 const FEWEST: f64 = 32.0;
 
@@ -56,8 +60,12 @@ const STRAY: f64 = 3.0;
 /// The share of the points that the two half planes must explain.
 const EXPLAINED: f64 = 0.75;
 
-/// The share of the points, and their number, that either side must hold.
+/// The share of the points that either side must hold: half a neighbourhood whose middle lies off the
+/// crease as far as it may holds 0.28.
 const SIDE_SHARE: f64 = 0.15;
+
+/// The number of points that either side must hold, so that its plane says more than its points: three
+/// lie on one whatever they are of.
 const SIDE_POINTS: usize = 6;
 
 /// Variance, in squares of the spacing, by which the points of a side must spread along it both
@@ -74,9 +82,12 @@ const BETTER: f64 = 16.0;
 /// The same where the hinge misses them by more than noise: the ratio of the excesses over it.
 const BETTER_SHAPED: f64 = 3.0;
 
-/// Two half planes that miss the points by more than this share of the spacing, and by more than
-/// their noise, are not the surface.
+/// Two half planes that miss the points of a cloud without noise by more than this share of the
+/// spacing are not the surface: a sphere of eight spacings they miss by about as much.
 const LOOSE: f64 = 0.15;
+
+/// Of the variance that noise has, what half planes may miss the points by, beyond that: chance adds
+/// as much to the mean of 32 squares once in thirty times.
 const LOOSE_NOISE: f64 = 1.5;
 
 /// A quadric that misses the points by no more than this share of the spacing is as good as a hinge.
@@ -99,21 +110,25 @@ pub(super) struct Points<'a> {
 impl Points<'_> {
     /// Samples of all creases whose turn has a lesser cosine than `turn`, in the order of the points.
     pub(super) fn samples(&self, turn: f64) -> Vec<Sample> {
-        let rough: Vec<usize> =
-            (0..self.positions.len()).into_par_iter().filter(|&n| self.is_rough(n)).collect();
-        let stride = (self.count(self.usual_spacing(&rough)) as f64 / FEWEST) as usize;
-        rough.par_iter().step_by(stride.max(1)).filter_map(|&n| self.sample(n, turn)).collect()
+        let count = self.count(self.usual_spacing());
+        // Neighbourhoods overlap the more the larger they are.
+        let stride = (count as f64 / FEWEST) as usize;
+        let seeds = (0..self.positions.len()).into_par_iter().step_by(stride.max(1));
+        seeds.filter(|&n| self.is_rough(n, stride > 1)).filter_map(|n| self.sample(n, turn)).collect()
     }
 
-    /// The median spacing of some points, model units.
-    fn usual_spacing(&self, some: &[usize]) -> f64 {
-        let mut spacings: Vec<f32> = some.iter().map(|&n| self.spacing[n]).collect();
-        spacings.sort_unstable_by(f32::total_cmp);
-        spacings.get(spacings.len() / 2).copied().unwrap_or_default().into()
+    /// The median spacing, model units.
+    fn usual_spacing(&self) -> f64 {
+        let mut spacings = self.spacing.to_vec();
+        let middle = spacings.len() / 2;
+        match middle < spacings.len() {
+            true => f64::from(*spacings.select_nth_unstable_by(middle, f32::total_cmp).1),
+            false => 0.0,
+        }
     }
 
-    /// Whether the nearest points lie about their plane as on no smooth surface.
-    fn is_rough(&self, n: usize) -> bool {
+    /// Whether the points around one, the nearest or `many`, lie about their plane as on no smooth surface.
+    fn is_rough(&self, n: usize, many: bool) -> bool {
         let spacing = f64::from(self.spacing[n]);
         let noise = self.noise / spacing;
         if !(spacing > 0.0 && noise < DROWNED) {
@@ -121,8 +136,14 @@ impl Points<'_> {
         }
         let here = self.positions[n].as_dvec3();
         let offset = |other: u32| (self.positions[other as usize].as_dvec3() - here) / spacing;
-        let moments = Moments::of(std::iter::once(DVec3::ZERO).chain(listed(&self.nearest[n]).map(offset)));
-        moments.thickness() > ROUGH * ROUGH + ROUGH_NOISE * noise * noise
+        let (moments, share) = if many {
+            let around = self.search.around(self.positions[n], self.count(spacing));
+            (Moments::of(around.into_iter().map(offset)), ROUGH_AMONG_MANY)
+        } else {
+            let near = std::iter::once(DVec3::ZERO).chain(listed(&self.nearest[n]).map(offset));
+            (Moments::of(near), ROUGH_NOISE)
+        };
+        moments.thickness() > ROUGH * ROUGH + share * noise * noise
     }
 
     /// How many points are looked at where they lie so far apart.

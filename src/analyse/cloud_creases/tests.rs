@@ -3,18 +3,8 @@
 use glam::DVec3;
 
 use super::*;
-use crate::analyse::canonical::mix;
+use crate::analyse::planted::{normal, random};
 use crate::analyse::segment_grid::SegmentGrid;
-
-/// Within `[-1, 1]`.
-fn random(n: u64) -> f64 {
-    (mix(n) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
-
-/// About normal, of variance 1: the sum of twelve numbers (Irwin and Hall).
-fn normal(n: u64) -> f64 {
-    (0..12).map(|k| 0.5 * random((1 << 40) + 16 * n + k)).sum()
-}
 
 /// A place that strays by `scatter` in every direction.
 fn strayed(place: DVec3, scatter: f64, n: u64) -> Vec3 {
