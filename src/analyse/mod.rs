@@ -21,6 +21,7 @@ pub mod mesh_surface;
 pub mod nearest;
 pub mod orient;
 pub mod outliers;
+pub mod partners;
 pub mod refine;
 pub mod segment_grid;
 pub mod sets;

@@ -59,7 +59,9 @@ impl<'a> Patch<'a> {
 
     /// Whether a place lies in the ellipse and is not cut away.
     pub(super) fn covers(&self, uv: DVec2) -> bool {
-        self.splat.ellipse(uv) <= 1.0 && !self.conics.iter().any(|conic| conic.cuts(uv))
+        self.splat.ellipse(uv) <= 1.0
+            && !self.conics.iter().any(|conic| conic.cuts(uv))
+            && !self.splat.partners_cut(uv)
     }
 
     /// Places of the patch about a step from one of its own.

@@ -12,7 +12,7 @@ use super::outline::{Outline, outlines};
 use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
-use crate::fit::clip::{self, Care};
+use crate::fit::clip::{self, Care, Clips};
 use crate::fit::ellipse::{circumellipse, crossings};
 use crate::fit::pose::{Fitting, Pose, Principal, Shapes, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
@@ -90,6 +90,9 @@ pub struct Grower<'a> {
     pub budget: Budget,
     /// What splats may be pieces of.
     pub shapes: Shapes,
+    /// Where nothing lies across a border ([`super::outline::open_sides`]), for splats that
+    /// partners cut; else empty.
+    pub open: Vec<bool>,
     /// Splats are rounded before they are judged and cut, so that storing them changes
     /// nothing that was judged.
     pub round: &'a Round<'a>,
@@ -287,9 +290,9 @@ impl Grower<'_> {
         care: Care,
         region: &Region,
     ) -> Result<Vec<ClipCurve>, Stop> {
-        let outlines = outlines(self.surface, region, pose);
+        let outlines = outlines(self.surface, region, pose, &self.open);
         let mut clips = Vec::new();
-        for Outline { points, closed } in &outlines {
+        for Outline { points, closed, .. } in &outlines {
             clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, care).ok_or(Stop::Clip)?);
             if clips.len() > MOST_CLIPS {
                 return Err(Stop::Clip);
@@ -305,5 +308,19 @@ impl Grower<'_> {
         } else {
             Err(Stop::Stray)
         }
+    }
+
+    /// Of the curves that [`Self::clips`] gives, those along which the surface ends, if it is
+    /// partners that cut along feature lines. Around a corner of both kinds they are kept.
+    pub(super) fn end_clips(&self, pose: &Pose, outer: DVec2, region: &Region) -> Option<Vec<ClipCurve>> {
+        let mut clips = Vec::new();
+        if self.budget.clip.clips == Clips::Partners {
+            for Outline { points, closed, .. } in
+                outlines(self.surface, region, pose, &self.open).iter().filter(|outline| outline.ends)
+            {
+                clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, Care::Nearest)?);
+            }
+        }
+        Some(clips)
     }
 }

@@ -27,7 +27,7 @@ pub fn axes(normal: DVec3) -> DMat3 {
 
 /// A splat without clips.
 pub fn splat(center: DVec3, axes: DMat3, radii: DVec2, curvature: DVec2) -> Splat {
-    Splat { center, axes, radii, curvature, clips: Vec::new(), color: [255; 3] }
+    Splat { center, axes, radii, curvature, clips: Vec::new(), partners: Vec::new(), color: [255; 3] }
 }
 
 /// `count` even directions (a Fibonacci spiral).
