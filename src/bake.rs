@@ -47,7 +47,7 @@ pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Opt
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `encode`, `write`).
+    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `partners`, `encode`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
     fn advance(&mut self, done: u64, total: u64);
@@ -143,7 +143,7 @@ pub fn bake(
         Clips::Curved | Clips::Straight => (chosen.into_iter().map(|one| one.splat).collect(), None),
         Clips::Partners => {
             clock.stage(progress, "partners");
-            let (splats, tally) = partnered(chosen, &surface, &rule(&surface, options, max_error, diagonal));
+            let (splats, tally) = partnered(chosen, &surface, &rule(options, max_error));
             (splats, Some(tally))
         }
     };

@@ -6,22 +6,16 @@
 //! without another beyond, as at a mesh's open border, there is no partner, and the conics stay.
 
 use super::options::Options;
-use super::piece_length;
 use crate::analyse::creases::weak_cosine;
 use crate::analyse::partners::{Rule, Shown, Tally, clip_partners};
 use crate::analyse::surface::Surface;
 use crate::model::splat::Splat;
 use crate::sample::settle::Candidate;
 
-/// A cloud's splats meet within this many of its margins of a point on the line between them.
-const MARGINS: f64 = 2.0;
-
-/// When two splats over a surface are partners. Angles are those at which its creases go on, so
-/// that no crease is left without.
-pub(super) fn rule(surface: &Surface, options: &Options, max_error: f64, diagonal: f64) -> Rule {
-    let margin = surface.margin.iter().copied().fold(0.0, f32::max);
-    let apart = piece_length(max_error, diagonal).max(MARGINS * f64::from(margin));
-    Rule { agree: weak_cosine(options.edge_angle), max_error, beside: Some(apart) }
+/// When two splats are partners. Angles are those at which creases go on, so that no crease is
+/// left without.
+pub(super) fn rule(options: &Options, max_error: f64) -> Rule {
+    Rule { agree: weak_cosine(options.edge_angle), max_error }
 }
 
 /// The splats of a cover, cut by their partners.
@@ -42,9 +36,11 @@ fn shown(one: &Candidate, surface: &Surface) -> Shown {
         one.pieces.iter().flat_map(|&piece| surface.pieces[piece as usize]).collect();
     corners.sort_unstable();
     corners.dedup();
-    let place = |point: &u32| surface.point(*point);
+    let place = |point: u32| surface.point(point);
+    let sides = corners.iter().map(|&from| (from, surface.border_next[from as usize]));
+    let ends = sides.filter(|(_, to)| corners.binary_search(to).is_ok());
     Shown {
-        places: corners.iter().map(place).collect(),
-        ends: corners.iter().filter(|&&point| surface.on_border(point)).map(place).collect(),
+        places: corners.iter().map(|&point| place(point)).collect(),
+        ends: Some(ends.map(|(from, to)| [place(from), place(to)]).collect()),
     }
 }

@@ -13,7 +13,7 @@ pub struct Limits {
     pub splats: u64,
     /// Clip curves; each takes about 60 bytes of memory. Default `2^22`.
     pub clips: u64,
-    /// Pairs of clip partners; each takes about 300 bytes of memory. Default `2^20`.
+    /// Pairs of clip partners; each takes about 400 bytes of memory. Default `2^20`.
     pub partners: u64,
     /// Bytes of all chunks after zstd. Default `2^28`.
     pub decoded_bytes: u64,

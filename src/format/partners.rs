@@ -1,7 +1,7 @@
 //! The chunk of clip partners: who cuts whom, and how their areas come together.
 //!
 //! Partnership is mutual, so a pair is listed once, by the splat that comes first in the file.
-//! `format-spec.md`, section 9, is the norm.
+//! `format-spec.md`, section 8.2, is the norm.
 
 use super::limits::Limits;
 use crate::error::{Error, Result};

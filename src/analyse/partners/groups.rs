@@ -10,12 +10,13 @@
 use glam::DVec3;
 
 use super::Candidate;
+use super::meeting::BESIDE;
 use crate::analyse::sets::Sets;
 use crate::model::partner::Group;
 
 /// Partners whose surfaces keep within this many error bounds of each other's edges are one
-/// surface.
-const ONE_SURFACE: f64 = 2.0;
+/// surface. What is taken for an edge may go on beyond a corner by [`BESIDE`].
+const ONE_SURFACE: f64 = BESIDE + 1.0;
 
 /// Two edges follow each other if they come this near, in the larger of their spacings.
 const FOLLOWS: f64 = 2.0;
@@ -53,16 +54,16 @@ fn follow(one: &Candidate, other: &Candidate) -> bool {
     one.edge.iter().any(near)
 }
 
-/// Whether each of two partners cuts away the other's edge, or both are one surface.
+/// Whether neither of two partners surely leaves the other's edge alone: each cuts some of it
+/// away, or they are one surface there.
 fn together(one: &Candidate, other: &Candidate, max_error: f64) -> bool {
     let limit = ONE_SURFACE * max_error;
-    let reach = |by: &Candidate, of: &Candidate| {
-        let depths = of.edge.iter().map(|&place| by.partner.depth(place) + by.partner.outset);
-        depths.fold((0.0_f64, 0.0_f64), |(low, high), depth| (low.min(depth), high.max(depth)))
+    let spares = |by: &Candidate, of: &Candidate| {
+        let beyond = of.edge.iter().map(|&place| by.partner.depth(place) + by.partner.outset);
+        let (low, high) = beyond.fold((0.0_f64, 0.0_f64), |(low, high), to| (low.min(to), high.max(to)));
+        low < -limit && high <= limit
     };
-    let (there, back) = (reach(one, other), reach(other, one));
-    let one_surface = [there, back].iter().all(|(low, high)| -low <= limit && *high <= limit);
-    one_surface || (there.1 > limit && back.1 > limit)
+    !spares(one, other) && !spares(other, one)
 }
 
 /// The groups that cut nothing away that must be shown. Those that do are merged with each other

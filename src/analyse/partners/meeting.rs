@@ -23,6 +23,11 @@ const AROUND: usize = 96;
 /// Halvings of the step in which a sign changes: to a millionth of the radius.
 const HALVINGS: usize = 16;
 
+/// Splats meet within this many error bounds of the line between their surfaces: each may miss
+/// the line by a third of one, and at the flattest angle that is still a crease (16 degrees) the
+/// place where they cross lies up to four times as far off.
+pub(super) const BESIDE: f64 = 3.0;
+
 /// Where two splats meet.
 #[derive(Clone, Debug)]
 pub(super) struct Meeting {
@@ -94,14 +99,19 @@ fn met(small: &Splat, large: &Splat, uv: DVec2, agree: f64) -> Option<DVec3> {
     (differ && large.ellipse(there) <= 1.0).then_some(place)
 }
 
+/// Squared distance from a segment to a point.
+fn squared_distance([a, b]: [DVec3; 2], point: DVec3) -> f64 {
+    let (along, length) = (b - a, a.distance_squared(b));
+    let t = if length > 0.0 { ((point - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    point.distance_squared(a + t * along)
+}
+
 impl Meeting {
-    /// The same with only those places that lie near an end of both surfaces, if those are known.
-    pub(super) fn beside(mut self, ends: [&[DVec3]; 2], beside: Option<f64>) -> Option<Self> {
-        if let Some(reach) = beside {
-            let near = |place: DVec3, ends: &[DVec3]| {
-                ends.iter().any(|end| end.distance_squared(place) <= reach * reach)
-            };
-            self.places.retain(|&place| ends.iter().all(|ends| near(place, ends)));
+    /// The same with only those places that lie beside an end of a surface, if those are known.
+    pub(super) fn beside(mut self, ends: Option<&[[DVec3; 2]]>, max_error: f64) -> Option<Self> {
+        if let Some(ends) = ends {
+            let reach = BESIDE * max_error;
+            self.places.retain(|&place| ends.iter().any(|end| squared_distance(*end, place) <= reach * reach));
         }
         (!self.places.is_empty()).then_some(self)
     }

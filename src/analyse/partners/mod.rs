@@ -36,8 +36,10 @@ pub struct Shown {
     /// Places of the surface that it covers, near its quadric: at least one. Nothing may cut
     /// them away.
     pub places: Vec<DVec3>,
-    /// Those of them at which the surface ends or bends sharply.
-    pub ends: Vec<DVec3>,
+    /// Segments between those of them along which the surface ends or bends sharply; `None` if
+    /// that is not known. Two splats meet beside such segments of both; where they cross
+    /// elsewhere, one of them stands out into the air.
+    pub ends: Option<Vec<[DVec3; 2]>>,
 }
 
 /// When two splats are partners.
@@ -47,10 +49,6 @@ pub struct Rule {
     pub agree: f64,
     /// Error bound, model units.
     pub max_error: f64,
-    /// Two splats meet within this of places where both their surfaces end, model units; where
-    /// they cross elsewhere, one of them stands out into the air. `None` if that is not known:
-    /// they then meet wherever they cross.
-    pub beside: Option<f64>,
 }
 
 /// What was found, for the report.
@@ -102,7 +100,9 @@ fn candidates(splats: &[Splat], shown: &[Shown], rule: &Rule) -> Vec<Vec<Candida
         .par_iter()
         .filter_map(|&[a, b]| {
             let meeting = meeting::meeting([&splats[a as usize], &splats[b as usize]], rule.agree)?;
-            let meeting = meeting.beside([&shown[a as usize].ends, &shown[b as usize].ends], rule.beside)?;
+            let meeting = [a, b].into_iter().try_fold(meeting, |meeting, of| {
+                meeting.beside(shown[of as usize].ends.as_deref(), rule.max_error)
+            })?;
             Some(([a, b], meeting))
         })
         .collect();
