@@ -18,8 +18,8 @@ use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_creases::{Sought, cloud_creases};
 use crate::analyse::cloud_surface::{Lines, cloud_surface};
-use crate::analyse::partners::Tally;
 use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
+use crate::analyse::partners::Tally;
 use crate::analyse::surface::Surface;
 use crate::analyse::thin::{Reach, thin};
 use crate::analyse::worth::Worth;
@@ -41,9 +41,9 @@ use crate::sample::grow::Grower;
 use crate::sample::outline::open_sides;
 pub use found_lines::found_lines;
 use meant::check_noise;
-use partnered::{partnered, rule};
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
+use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
@@ -193,7 +193,8 @@ pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
     let (diagonal, scale) = (diagonal(&input.cloud().positions), input.cloud().frame.scale());
     if options.clips == Clips::Partners && matches!(options.edges, Edges::Given(_)) {
         return Err(Error::Usage(
-            "clip partners take no feature lines: leave --edges out, or cut along them with --clips curved".into(),
+            "clip partners take no feature lines: leave --edges out, or cut along them with --clips curved"
+                .into(),
         ));
     }
     if !(1..=9).contains(&options.effort) {

@@ -60,7 +60,11 @@ fn a_cube_is_cut_by_its_faces_alone() {
     assert!(asset.splats.iter().all(|splat| splat.clips.is_empty() && !splat.partners.is_empty()));
     assert!(asset.splats.iter().flat_map(|splat| &splat.partners).all(|group| group.len() == 1));
     let share = outline(asset, &input);
-    println!("cube: {} splats, {} bytes, {share:e} of the pixels differ", asset.splats.len(), delivery.bytes.len());
+    println!(
+        "cube: {} splats, {} bytes, {share:e} of the pixels differ",
+        asset.splats.len(),
+        delivery.bytes.len()
+    );
     assert!(share < OUTLINE, "{share}");
     // Without the cuts the picture is another.
     let mut whole = asset.clone();

@@ -21,7 +21,13 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { file_bytes: 1 << 30, splats: 1 << 22, clips: 1 << 22, partners: 1 << 20, decoded_bytes: 1 << 28 }
+        Self {
+            file_bytes: 1 << 30,
+            splats: 1 << 22,
+            clips: 1 << 22,
+            partners: 1 << 20,
+            decoded_bytes: 1 << 28,
+        }
     }
 }
 

@@ -224,7 +224,11 @@ impl Numbers<'_> {
             let byte = self.byte()?;
             value |= u64::from(byte & 0x7f) << (7 * n);
             if byte & 0x80 == 0 {
-                return if byte == 0 && n > 0 { Err(fault("has a number with idle bytes")) } else { Ok(value) };
+                return if byte == 0 && n > 0 {
+                    Err(fault("has a number with idle bytes"))
+                } else {
+                    Ok(value)
+                };
             }
         }
         Err(fault(format!("has a number of more than {LONGEST} bytes")))

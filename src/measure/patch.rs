@@ -140,9 +140,8 @@ fn left(splat: &Splat) -> f64 {
     }
     let at = |n: u32| f64::from(2 * n + 1) / f64::from(ACROSS) - 1.0;
     let places = (0..ACROSS).flat_map(|x| (0..ACROSS).map(move |y| DVec2::new(at(x), at(y)) * splat.radii));
-    let kept = |uv: &DVec2| {
-        splat.ellipse(*uv) <= 1.0 && !splat.clips.iter().any(|clip| clip.cuts(*uv, splat.radii))
-    };
+    let kept =
+        |uv: &DVec2| splat.ellipse(*uv) <= 1.0 && !splat.clips.iter().any(|clip| clip.cuts(*uv, splat.radii));
     let places: Vec<DVec2> = places.filter(kept).collect();
     let shown = places.iter().filter(|&&uv| !splat.partners_cut(uv)).count();
     shown as f64 / places.len().max(1) as f64

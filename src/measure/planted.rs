@@ -18,7 +18,15 @@ pub(super) fn asset(splats: Vec<Splat>) -> Asset {
 
 /// A flat splat in the plane `z = 0`.
 pub(super) fn flat(center: DVec3, radii: DVec2, clips: Vec<ClipCurve>) -> Splat {
-    Splat { center, axes: DMat3::IDENTITY, radii, curvature: DVec2::ZERO, clips, partners: Vec::new(), color: [255; 3] }
+    Splat {
+        center,
+        axes: DMat3::IDENTITY,
+        radii,
+        curvature: DVec2::ZERO,
+        clips,
+        partners: Vec::new(),
+        color: [255; 3],
+    }
 }
 
 /// A mesh of the default frame.

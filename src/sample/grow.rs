@@ -45,7 +45,7 @@ const LONGEST_RADIUS: f64 = 4.0;
 /// A splat that partners cut reaches at most this many times as far along each axis as what it
 /// covers: all of it beyond a line shows that no partner cuts, and they are made for places near
 /// the line. (An ellipse around a rectangle reaches 1.42 times as far.)
-const MOST_REACH: f64 = 2.0;
+const MOST_REACH: f64 = 3.0;
 
 /// The least radius worth trying, as a share of the budget, however small the piece.
 const LEAST_SHARE: f64 = 0.02;

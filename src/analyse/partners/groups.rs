@@ -69,9 +69,8 @@ fn together(one: &Candidate, other: &Candidate, max_error: f64) -> bool {
 /// The groups that cut nothing away that must be shown. Those that do are merged with each other
 /// where that helps, else given up: then the splat reaches over that edge, as far as its ellipse.
 fn kept(groups: Vec<Group>, feet: &[DVec3]) -> (Vec<Group>, usize) {
-    let sound = |group: &Group| {
-        !feet.iter().any(|&foot| group.iter().all(|partner| partner.depth(foot) > 0.0))
-    };
+    let sound =
+        |group: &Group| !feet.iter().any(|&foot| group.iter().all(|partner| partner.depth(foot) > 0.0));
     let (mut kept, mut bad): (Vec<Group>, Vec<Group>) = groups.into_iter().partition(sound);
     let mut given_up = 0;
     while let Some(group) = (!bad.is_empty()).then(|| bad.remove(0)) {

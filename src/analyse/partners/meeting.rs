@@ -43,8 +43,7 @@ pub(super) fn meeting(pair: [&Splat; 2], agree: f64) -> Option<Meeting> {
         return None;
     }
     let [a, b] = pair;
-    let (small, large) =
-        if b.radii.element_product() < a.radii.element_product() { (b, a) } else { (a, b) };
+    let (small, large) = if b.radii.element_product() < a.radii.element_product() { (b, a) } else { (a, b) };
     let sheet = Sheet::of(large);
     let above = |unit: DVec2| sheet.above(small.surface_point(unit * small.radii));
     let mut places = Vec::new();
@@ -111,7 +110,8 @@ impl Meeting {
     pub(super) fn beside(mut self, ends: Option<&[[DVec3; 2]]>, max_error: f64) -> Option<Self> {
         if let Some(ends) = ends {
             let reach = BESIDE * max_error;
-            self.places.retain(|&place| ends.iter().any(|end| squared_distance(*end, place) <= reach * reach));
+            self.places
+                .retain(|&place| ends.iter().any(|end| squared_distance(*end, place) <= reach * reach));
         }
         (!self.places.is_empty()).then_some(self)
     }

@@ -36,8 +36,8 @@ pub struct Shown {
     /// Places of the surface that it covers, near its quadric: at least one. Nothing may cut
     /// them away.
     pub places: Vec<DVec3>,
-    /// Segments between those of them along which the surface ends or bends sharply; `None` if
-    /// that is not known. Two splats meet beside such segments of both; where they cross
+    /// Segments within its ellipse along which the surface ends or bends sharply; `None` if that
+    /// is not known. Two splats meet beside such segments of both; where they cross
     /// elsewhere, one of them stands out into the air.
     pub ends: Option<Vec<[DVec3; 2]>>,
 }

@@ -36,9 +36,8 @@ fn listed(groups: &[Group]) -> Vec<Vec<(u32, Cut)>> {
 fn prism(corners: &[DVec2], face: Splat, places: &[DVec2]) -> (Vec<Splat>, Vec<Shown>) {
     const DEEP: DVec3 = dvec3(0.0, 0.0, -1.0);
     let flat = |p: &DVec2| p.extend(0.0);
-    let sides: Vec<[DVec3; 2]> = (0..corners.len())
-        .map(|n| [flat(&corners[n]), flat(&corners[(n + 1) % corners.len()])])
-        .collect();
+    let sides: Vec<[DVec3; 2]> =
+        (0..corners.len()).map(|n| [flat(&corners[n]), flat(&corners[(n + 1) % corners.len()])]).collect();
     let wall = |&[a, b]: &[DVec3; 2]| {
         let middle = a.midpoint(b) + 0.5 * DEEP;
         disc(middle, (b - a).cross(DVec3::Z).normalize(), 1.05 * a.distance(middle))
@@ -56,8 +55,7 @@ fn prism(corners: &[DVec2], face: Splat, places: &[DVec2]) -> (Vec<Splat>, Vec<S
 
 #[test]
 fn two_faces_of_a_box_cut_what_the_other_sees() {
-    let splats =
-        [disc(DVec3::ZERO, DVec3::Z, 1.2), disc(dvec3(1.0, 0.0, -0.8), DVec3::X, 1.2)];
+    let splats = [disc(DVec3::ZERO, DVec3::Z, 1.2), disc(dvec3(1.0, 0.0, -0.8), DVec3::X, 1.2)];
     let (groups, tally) = clip_partners(&splats, &centers(&splats), &RULE);
     assert_eq!(listed(&groups[0]), [[(1, Cut::Seen)]]);
     assert_eq!(listed(&groups[1]), [[(0, Cut::Seen)]]);
@@ -66,8 +64,7 @@ fn two_faces_of_a_box_cut_what_the_other_sees() {
 
 #[test]
 fn floor_and_wall_cut_what_the_other_does_not_see() {
-    let splats =
-        [disc(DVec3::ZERO, DVec3::Z, 1.2), disc(dvec3(1.0, 0.0, 0.8), DVec3::NEG_X, 1.2)];
+    let splats = [disc(DVec3::ZERO, DVec3::Z, 1.2), disc(dvec3(1.0, 0.0, 0.8), DVec3::NEG_X, 1.2)];
     let (groups, _) = clip_partners(&splats, &centers(&splats), &RULE);
     assert_eq!(listed(&groups[0]), [[(1, Cut::Unseen)]]);
     assert_eq!(listed(&groups[1]), [[(0, Cut::Unseen)]]);
@@ -105,10 +102,7 @@ fn around_a_hole_areas_intersect() {
     let (groups, tally) = clip_partners(&splats, &shown, &RULE);
     assert_eq!(listed(&groups[4]), [[0, 1, 2, 3].map(|wall| (wall, Cut::Seen)).to_vec()]);
     // The hole's own walls are cut by the face, and by each other where they meet in a corner.
-    assert_eq!(
-        listed(&groups[0]),
-        [(1, Cut::Unseen), (3, Cut::Unseen), (4, Cut::Seen)].map(|one| vec![one])
-    );
+    assert_eq!(listed(&groups[0]), [(1, Cut::Unseen), (3, Cut::Unseen), (4, Cut::Seen)].map(|one| vec![one]));
     assert_eq!((tally.united, tally.intersected, tally.given_up), (4, 1, 0));
 }
 
@@ -141,8 +135,7 @@ fn a_mixed_set_falls_into_groups() {
 #[test]
 fn what_is_shown_is_never_cut_away() {
     // A wall that only passes through a part of the floor.
-    let splats =
-        [disc(DVec3::ZERO, DVec3::Z, 1.2), disc(dvec3(0.5, 0.0, -0.8), DVec3::X, 1.0)];
+    let splats = [disc(DVec3::ZERO, DVec3::Z, 1.2), disc(dvec3(0.5, 0.0, -0.8), DVec3::X, 1.0)];
     let mut shown = centers(&splats);
     shown[0].places.push(dvec3(0.9, 0.7, 0.0));
     let (groups, tally) = clip_partners(&splats, &shown, &RULE);
