@@ -3,12 +3,12 @@
 //! Ivo, Vidal and Cavalcante-Neto, "A new method for cutting splats of models with sharp
 //! features", sections III and IV; Ivo 2020, 2.1 and Fig. 11. Four steps, each a file:
 //!
-//! 1. [`mod@neighbours`]: splats nearer than their radii reach (equation 1, whose sign is a
+//! 1. `neighbours`: splats nearer than their radii reach (equation 1, whose sign is a
 //!    misprint).
-//! 2. [`mod@meeting`]: where two of them cross at an angle (equations 2 to 13).
-//! 3. [`mod@sides`]: whether a splat keeps what its partner sees or what it does not (equation
+//! 2. `meeting`: where two of them cross at an angle (equations 2 to 13).
+//! 3. `sides`: whether a splat keeps what its partner sees or what it does not (equation
 //!    16).
-//! 4. [`mod@groups`]: whether the areas of partners unite or intersect (Fig. 5), mixed sets
+//! 4. `groups`: whether the areas of partners unite or intersect (Fig. 5), mixed sets
 //!    taken apart.
 //!
 //! The paper's splats are many small discs of about one size, whose centres stand for all of
