@@ -85,7 +85,7 @@ def read_chunks(data, count):
         require(len(body) == coded and zlib.crc32(body) == check, "a chunk's checksum or length")
         name = name.decode("latin-1")
         require(name not in chunks and flags & ~3 == 0, "chunk twice, or unknown flags")
-        if name not in STREAMS + ["BITS", "COLR"]:
+        if name not in STREAMS + ["BITS", "COLR", "PART"]:
             require(flags & 1 == 0, "an unknown required chunk")
             continue
         if flags & 2:
@@ -362,6 +362,53 @@ def paint(splats, planes):
         splat["color"] = [(last[1] + last[0]) % 256, last[0], (last[2] + last[0]) % 256]
 
 
+# Section 8.2: clip partners --------------------------------------------------------------------
+
+
+class Numbers:
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def next(self):
+        value = 0
+        for n in range(5):
+            require(self.at < len(self.data), "clip partners end too early")
+            byte = self.data[self.at]
+            self.at += 1
+            value |= (byte & 127) << 7 * n
+            if byte < 128:
+                require(byte > 0 or n == 0, "a number with idle bytes")
+                return value
+        raise Bad("a number of more than five bytes")
+
+
+def link(splats, data):
+    numbers = Numbers(data)
+    require(numbers.next() == 1, "the version of the clip partners")
+    partners = [{} for _ in splats]
+    for i in range(len(splats)):
+        j = i
+        for _ in range(numbers.next()):
+            number = numbers.next()
+            j += (number >> 2) + 1
+            require(j < len(splats), "a partner beyond the last splat")
+            partners[i][j], partners[j][i] = number & 1, number >> 1 & 1
+    for splat, own in zip(splats, partners):
+        if not own:
+            continue
+        way, groups = numbers.next(), []
+        require(way in (0, 2) or way == 1 and len(own) > 1, "how partners cut")
+        for n, j in enumerate(sorted(own)):
+            group = [n + 1, 1][way] if way < 2 else numbers.next()
+            require(group <= len(groups) + 1, "a group out of turn")
+            if group > len(groups):
+                groups.append([])
+            if group > 0:
+                groups[group - 1].append({"splat": j, "sees": own[j] == 1})
+        splat["partners"] = groups
+    require(numbers.at == len(data), "clip partners are left over")
+
+
 def decode(data):
     head, count = read_header(data)
     chunks = read_chunks(data, count)
@@ -383,6 +430,10 @@ def decode(data):
         paint(splats, chunks.get("COLR", b""))
     for splat in splats:
         del splat["sizes"]
+        splat["partners"] = []
+    require((head["optional"] & 2 != 0) == ("PART" in chunks), "partners that are not announced")
+    if "PART" in chunks:
+        link(splats, chunks["PART"])
     return {
         "version": 1,
         "frame": {"origin": head["origin"], "exponent": head["exponent"]},

@@ -4,6 +4,7 @@ pub mod found_lines;
 pub mod meant;
 pub mod noise;
 pub mod options;
+mod partnered;
 mod patch;
 pub mod quiet;
 #[cfg(test)]
@@ -18,6 +19,7 @@ use glam::{DVec3, Vec3};
 use crate::analyse::cloud_creases::{Sought, cloud_creases};
 use crate::analyse::cloud_surface::{Lines, cloud_surface};
 use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
+use crate::analyse::partners::Tally;
 use crate::analyse::surface::Surface;
 use crate::analyse::thin::Reach;
 use crate::analyse::worth::Worth;
@@ -36,14 +38,16 @@ use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::grow::Grower;
+use crate::sample::outline::open_sides;
 pub use found_lines::found_lines;
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
+use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `encode`, `write`).
+    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `partners`, `encode`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
     fn advance(&mut self, done: u64, total: u64);
@@ -85,6 +89,8 @@ pub struct Baked {
     pub features: Found,
     /// How the splats were chosen.
     pub choice: Choice,
+    /// What came of the clip partners, if splats are cut by them.
+    pub partners: Option<Tally>,
     /// Points of the surface that the splats were fitted to.
     pub samples: usize,
     /// Points of a cloud, ascending, that belong to no surface: the bound does not hold for them.
@@ -120,18 +126,27 @@ pub fn bake(
     clock.stage(progress, "sample");
     let round = |splat: &Splat| rounding(splat, max_error);
     let budget = Budget::new(max_error, options.clips);
-    let grower = Grower { surface: &surface, budget, shapes: options.shapes, round: &round };
+    let open = if options.clips == Clips::Partners { open_sides(&surface) } else { Vec::new() };
+    let grower = Grower { surface: &surface, budget, shapes: options.shapes, open, round: &round };
     let regions = Regions::new(surface.points.len());
     let total = surface.pieces.len() as u64;
     let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));
     clock.stage(progress, "cover");
-    let (splats, choice) = cover(&grower, &regions, found, options.effort);
+    let (chosen, choice) = cover(&grower, &regions, found, options.effort);
     if choice.uncovered > 0 {
         return Err(Error::Internal(format!(
             "{} pieces of the surface could not be covered",
             choice.uncovered
         )));
     }
+    let (splats, partners) = match options.clips {
+        Clips::Curved | Clips::Straight => (chosen.into_iter().map(|one| one.splat).collect(), None),
+        Clips::Partners => {
+            clock.stage(progress, "partners");
+            let (splats, tally) = partnered(chosen, &surface, &rule(options, max_error));
+            (splats, Some(tally))
+        }
+    };
     let asset = Asset {
         frame: cloud.frame,
         diagonal,
@@ -146,7 +161,19 @@ pub fn bake(
         Cow::Borrowed(_) => None,
     };
     let (noise, made, stages) = (meant.noise, meant.made, clock.finish());
-    Ok(Baked { asset, stages, noise, made, stand_in, features, choice, samples, left_out, colors_left_out })
+    Ok(Baked {
+        asset,
+        stages,
+        noise,
+        made,
+        stand_in,
+        features,
+        choice,
+        partners,
+        samples,
+        left_out,
+        colors_left_out,
+    })
 }
 
 /// Length of the bounding box's diagonal.
@@ -164,6 +191,12 @@ fn diagonal(positions: &[Vec3]) -> f64 {
 /// [`Error::Usage`] for options out of range, and for an input without extent.
 pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
     let (diagonal, scale) = (diagonal(&input.cloud().positions), input.cloud().frame.scale());
+    if options.clips == Clips::Partners && matches!(options.edges, Edges::Given(_)) {
+        return Err(Error::Usage(
+            "clip partners take no feature lines: leave --edges out, or cut along them with --clips curved"
+                .into(),
+        ));
+    }
     if !(1..=9).contains(&options.effort) {
         return Err(Error::Usage(format!("effort {} is not within 1 to 9", options.effort)));
     }

@@ -35,6 +35,13 @@ pub const CLIP_MISS_SHARE: f64 = 0.3;
 /// Share of the budget by which rounding may move a clip curve.
 pub const CLIP_QUANTIZE_SHARE: f64 = 0.1;
 
+/// Share of the budget that a clip partner begins to cut beyond its surface.
+///
+/// At a feature line both surfaces may miss the line by [`LINE_FIT_SHARE`] of what splats are
+/// judged against, one way and the other: two thirds together. Beyond that nothing of the
+/// surface is cut. `format-spec.md` states it: a reader must cut at the same place.
+pub const PARTNER_OUTSET_SHARE: f64 = 0.75;
+
 /// Tessellations stay within this share of the budget of the surface they stand for, unless
 /// another is asked for.
 pub const EXPORT_SHARE: f64 = 0.1;

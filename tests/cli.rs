@@ -162,6 +162,9 @@ fn wrong_usage_ends_in_2_with_a_reason() {
         let message = bake(&more);
         assert!(message.contains(word), "{more:?}: {message}");
     }
+    let lines = fixture("capped-cylinder.edges.obj");
+    let message = refused(&["bake", &sphere, "-o", "never.qsplat", "--clip", "partners", "--edges", &lines]);
+    assert!(message.contains("leave --edges out"), "{message}");
     assert!(!Path::new("never.qsplat").exists());
     let render = |more: &[&str]| refused(&[&["render", &sphere, "-o", "never.png"], more].concat());
     for (more, word) in [

@@ -92,6 +92,11 @@ fn sound(bytes: &[u8], limits: &Limits) -> Result<Asset, Error> {
             }
         }
     }
+    for (n, splat) in asset.splats.iter().enumerate() {
+        for partner in splat.partners.iter().flatten() {
+            assert!((partner.splat as usize) < asset.splats.len() && partner.splat as usize != n);
+        }
+    }
     Ok(asset)
 }
 
@@ -104,7 +109,7 @@ fn refused(bytes: &[u8]) -> String {
 
 #[test]
 fn the_pieces_fit_together_again() {
-    for name in ["empty", "smooth", "mixed", "steep", "worked-example"] {
+    for name in ["empty", "smooth", "mixed", "steep", "worked-example", "partnered"] {
         let bytes = vector(name);
         assert_eq!(Parts::of(&bytes).whole(), bytes);
         sound(&bytes, &Limits::default()).unwrap();
@@ -113,7 +118,7 @@ fn the_pieces_fit_together_again() {
 
 #[test]
 fn every_prefix_and_every_tail_is_refused() {
-    for name in ["mixed", "smooth", "empty"] {
+    for name in ["mixed", "smooth", "empty", "partnered"] {
         let bytes = vector(name);
         for end in 0..bytes.len() {
             refused(&bytes[..end]);
@@ -252,6 +257,29 @@ fn symbols_too_few_too_many_or_out_of_range() {
 }
 
 #[test]
+fn partners_must_be_announced_and_be_there() {
+    let parts = Parts::of(&vector("partnered"));
+    let mut silent = parts.clone();
+    silent.header[16] = 0;
+    assert!(refused(&silent.whole()).contains("optional features"));
+    let mut without = parts.clone();
+    without.chunks.retain(|chunk| chunk.0 != *b"PART");
+    assert!(refused(&without.whole()).contains("optional features"));
+    without.header[16] = 0;
+    let whole = sound(&without.whole(), &Limits::default()).unwrap();
+    assert!(whole.splats.iter().all(|splat| splat.partners.is_empty()));
+    for (at, byte) in [(0, 2), (1, 200), (2, 255)] {
+        let mut broken = parts.clone();
+        broken.bare(b"PART")[at] = byte;
+        assert!(refused(&broken.whole()).contains("PART"), "byte {at}");
+    }
+    let mut longer = parts;
+    longer.bare(b"PART").push(0);
+    longer.chunk(b"PART").2 += 1;
+    assert!(refused(&longer.whole()).contains("PART"));
+}
+
+#[test]
 fn bombs_do_not_go_off() {
     // A frame of a gigabyte of zeros where a hundred bytes are announced, and the other way.
     let zeros = zstd::bulk::compress(&vec![0; 1 << 26], 19).unwrap()[4..].to_vec();
@@ -287,7 +315,7 @@ fn mutations_with_checksums_that_fit() {
         (state >> 33) as usize % below
     };
     let (mut accepted, mut tried) = (0, 0);
-    for name in ["mixed", "steep", "worked-example"] {
+    for name in ["mixed", "steep", "worked-example", "partnered"] {
         let mut parts = Parts::of(&vector(name));
         // Half of the trials change what lies under zstd, which zstd itself would catch.
         let ids: Vec<[u8; 4]> = parts.chunks.iter().map(|chunk| chunk.0).collect();

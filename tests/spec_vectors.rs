@@ -14,6 +14,8 @@ use qsplat::format::{Limits, decode, encode, inspect};
 use qsplat::model;
 use qsplat::model::asset::Asset;
 use qsplat::model::clip_curve::ClipCurve;
+use qsplat::model::partner::{Cut, Partner};
+use qsplat::model::splat::Splat;
 use serde_json::Value;
 
 #[path = "../src/format/planted.rs"]
@@ -73,7 +75,22 @@ fn vectors() -> Vec<(&'static str, Asset)> {
         ("mixed", mixed),
         ("steep", asset(steep, e)),
         ("worked-example", worked_example()),
+        ("partnered", partnered()),
     ]
+}
+
+/// Splats with clip partners in every arrangement.
+fn partnered() -> Asset {
+    let mut asset = bumpy_asset(40, 30.0, 3);
+    let splats = asset.splats.clone();
+    let partner = |n: usize, cut| Partner::new(n as u32, &splats[n], cut, asset.max_error);
+    let (seen, unseen) = (Cut::Seen, Cut::Unseen);
+    asset.splats[0].partners = vec![vec![partner(3, seen)], vec![partner(39, unseen)]];
+    asset.splats[3].partners = vec![vec![partner(0, seen), partner(7, unseen)]];
+    asset.splats[7].partners =
+        vec![vec![partner(3, unseen), partner(20, seen)], vec![partner(8, seen)], vec![partner(5, unseen)]];
+    asset.splats[20].partners = vec![vec![partner(7, seen)]];
+    asset
 }
 
 /// A flat disc and a bowl that a curve cuts.
@@ -132,7 +149,23 @@ fn compare(asset: &Asset, json: &Value, name: &str) {
                 .max((number(&json["alpha3"]) - clip.alpha3).abs());
             assert!(off < 4e-15, "{name}: {what}: angle off by {off}");
         }
+        assert_eq!(partners_of(json), partners(splat), "{name}: {what}");
     }
+}
+
+/// The groups of a splat's partners, each with whether it cuts what it sees.
+type Groups = Vec<Vec<(u64, bool)>>;
+
+fn partners(splat: &Splat) -> Groups {
+    let partner = |partner: &Partner| (u64::from(partner.splat), partner.cut == Cut::Seen);
+    splat.partners.iter().map(|group| group.iter().map(partner).collect()).collect()
+}
+
+/// The same by the second decoder; the values in the specification leave out what is not there.
+fn partners_of(json: &Value) -> Groups {
+    let Some(groups) = json["partners"].as_array() else { return Vec::new() };
+    let partner = |json: &Value| (json["splat"].as_u64().unwrap(), json["sees"].as_bool().unwrap());
+    groups.iter().map(|group| group.as_array().unwrap().iter().map(partner).collect()).collect()
 }
 
 /// The text of the fenced blocks of one language in the specification.

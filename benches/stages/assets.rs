@@ -57,6 +57,7 @@ fn splat(analysed: &Analysed, n: usize) -> Splat {
         radii: radius * DVec2::new(1.0, 0.8),
         curvature: found.curvature,
         clips,
+        partners: Vec::new(),
         color: [255; 3],
     }
 }

@@ -15,7 +15,8 @@ impl Page {
     /// An empty page.
     pub fn new(folder: PathBuf) -> Self {
         let text = "# The documents' figures\n\nMade by `scripts/figures`. `T` is Ivo's thesis \
-                    (Universidade Federal do Ceará, 2020). `D` is the diagonal of a model's bounding \
+                    (Universidade Federal do Ceará, 2020), `P` the paper by Ivo, Vidal and \
+                    Cavalcante-Neto on clip partners. `D` is the diagonal of a model's bounding \
                     box.\n"
             .to_owned();
         Self { folder, text }

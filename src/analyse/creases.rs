@@ -14,6 +14,12 @@ use super::weld::Welded;
 /// share as sharp: hysteresis, after Canny 1986.
 const WEAK_SHARE: f64 = 0.4;
 
+/// Cosine of the least angle at which a crease of this angle (degrees) may go on.
+#[must_use]
+pub fn weak_cosine(degrees: f64) -> f64 {
+    libm::cos((WEAK_SHARE * degrees).to_radians())
+}
+
 /// A crease goes on only along edges that bend from it by less than this (cosine of 45°).
 const STRAIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 

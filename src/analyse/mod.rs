@@ -24,6 +24,7 @@ pub mod mesh_surface;
 pub mod nearest;
 pub mod orient;
 pub mod outliers;
+pub mod partners;
 #[cfg(test)]
 pub(crate) mod planted;
 pub mod refine;

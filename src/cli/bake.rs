@@ -58,8 +58,10 @@ pub(super) struct Arguments {
     /// What splats may be pieces of. `flat` is for comparison: the same guarantees, more splats
     #[arg(long, value_enum, default_value_t)]
     shapes: ShapesArgument,
-    /// What splats may be cut by. `straight` is for comparison: the same guarantees, more splats
-    #[arg(long, value_enum, default_value_t)]
+    /// What splats are cut by. `straight` is for comparison: the same guarantees, more splats. So is
+    /// `partners`, which takes no feature lines (`--edges FILE` is refused): edges are as sharp as
+    /// the splats across them make them, and only what the bound says of the input holds
+    #[arg(long, visible_alias = "clip", value_enum, default_value_t)]
     clips: ClipsArgument,
     /// Writes the report as JSON (docs/report-schema.md)
     #[arg(long, value_name = "FILE.json")]
@@ -128,6 +130,8 @@ enum ClipsArgument {
     Curved,
     /// Chords alone
     Straight,
+    /// No curves but where the surface ends: each splat is cut by those across the edge
+    Partners,
 }
 
 pub(super) fn edge_angle(text: &str) -> std::result::Result<f64, String> {
@@ -200,6 +204,7 @@ impl Arguments {
             clips: match self.clips {
                 ClipsArgument::Curved => Clips::Curved,
                 ClipsArgument::Straight => Clips::Straight,
+                ClipsArgument::Partners => Clips::Partners,
             },
         })
     }

@@ -172,7 +172,15 @@ mod tests {
     use glam::{DMat3, DVec3};
 
     fn disc(radii: DVec2, curvature: DVec2) -> Splat {
-        Splat { center: DVec3::ZERO, axes: DMat3::IDENTITY, radii, curvature, clips: vec![], color: [255; 3] }
+        Splat {
+            center: DVec3::ZERO,
+            axes: DMat3::IDENTITY,
+            radii,
+            curvature,
+            clips: vec![],
+            partners: Vec::new(),
+            color: [255; 3],
+        }
     }
 
     /// Distance from a point to a chain of chords.

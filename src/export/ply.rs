@@ -21,9 +21,15 @@ const BATCH: usize = 4096;
 ///
 /// # Errors
 /// [`Error::Usage`] if the share is not one of [`EXPORT_SHARES`], or the distance so small beside
-/// the splats that the triangles would pass [`TRIANGLE_LIMIT`].
+/// the splats that the triangles would pass [`TRIANGLE_LIMIT`]; and for splats cut by clip
+/// partners, whose edges no triangle follows yet.
 pub fn patches(asset: &Asset, share: f64) -> Result<Vec<Patch>> {
     let distance = checked(share)? * asset.max_error;
+    if asset.splats.iter().any(|splat| !splat.partners.is_empty()) {
+        return Err(Error::Usage(
+            "triangles follow clip curves, not clip partners; bake with --clips curved to export".into(),
+        ));
+    }
     let mut patches = Vec::with_capacity(asset.splats.len());
     let mut triangles = 0;
     for batch in asset.splats.chunks(BATCH) {

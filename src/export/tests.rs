@@ -17,7 +17,15 @@ use crate::tolerance::EXPORT_SHARE;
 
 fn splat(radii: DVec2, curvature: DVec2, clips: Vec<ClipCurve>) -> Splat {
     let axes = DMat3::from_rotation_x(0.3) * DMat3::from_rotation_z(1.1);
-    Splat { center: DVec3::new(0.1, -0.2, 0.3), axes, radii, curvature, clips, color: [9, 8, 7] }
+    Splat {
+        center: DVec3::new(0.1, -0.2, 0.3),
+        axes,
+        radii,
+        curvature,
+        clips,
+        partners: Vec::new(),
+        color: [9, 8, 7],
+    }
 }
 
 /// Area in the `(u, v)` plane; panics on a triangle that is turned over.

@@ -32,6 +32,10 @@ pub enum Clips {
     Curved,
     /// Chords alone, for comparison: where none follows the line, the splat must be smaller.
     Straight,
+    /// None along feature lines, for comparison: there splats are cut by their partners across
+    /// the line ([`crate::model::partner`]). They are as large as conics would let them be, and
+    /// conics still cut them where the surface ends, since nothing lies across.
+    Partners,
 }
 
 /// How much to do for a clip curve.
@@ -76,7 +80,7 @@ fn cut_run(run: &Run, radii: DVec2, tolerance: &ClipTolerance, care: Care) -> Op
         return Some(vec![clip]);
     }
     let sine = match tolerance.clips {
-        Clips::Curved => CORNER_SINE,
+        Clips::Curved | Clips::Partners => CORNER_SINE,
         Clips::Straight => STRAIGHT_CORNER_SINE,
     };
     let arcs = split_at_convex_corners(run, sine)?;

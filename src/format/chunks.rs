@@ -2,6 +2,7 @@
 
 use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, Entry, Header};
 use super::limits::Limits;
+use super::partners;
 use super::tape::STREAMS;
 use crate::error::{Error, Result};
 
@@ -16,6 +17,9 @@ pub const BITS_ID: [u8; 4] = *b"BITS";
 
 /// Id of the chunk of colours.
 pub const COLOR_ID: [u8; 4] = *b"COLR";
+
+/// Id of the chunk of clip partners.
+pub const PARTNERS_ID: [u8; 4] = *b"PART";
 
 /// Extra bits of one splat or clip curve fill at most this many bytes.
 ///
@@ -46,6 +50,9 @@ pub fn most_bytes(id: [u8; 4], header: &Header) -> Option<u64> {
     }
     if id == COLOR_ID {
         return Some(3 * splats);
+    }
+    if id == PARTNERS_ID {
+        return Some(partners::MOST_BYTES * splats);
     }
     STREAM_IDS.iter().position(|known| *known == id).map(|stream| by_stream[stream])
 }

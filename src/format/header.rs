@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::grid::{GUESS_BEND, GUESS_SPIN, Grids, Steps};
-use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_QUADRICS, Header, KNOWN_REQUIRED};
+use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, KNOWN_REQUIRED};
 use super::limits::Limits;
 use super::record::Record;
 use super::write::common_kind;
@@ -64,11 +64,12 @@ pub fn header_of(asset: &Asset, grids: &Grids, records: &[Record], chunks: usize
     let clips = || records.iter().flat_map(|record| &record.clips);
     let (straight, curved) = (clips().filter(|c| c.rho == 0).count(), clips().filter(|c| c.rho != 0).count());
     let quadrics = records.iter().any(|record| record.bend != [0; 2]);
+    let partnered = asset.splats.iter().any(|splat| !splat.partners.is_empty());
     let steps = grids.steps;
     let flag = |on: bool, bit: u32| if on { bit } else { 0 };
     Ok(Header {
         required: flag(quadrics, HAS_QUADRICS) | flag(straight + curved > 0, HAS_CLIPS),
-        optional: flag(asset.has_colors, HAS_COLORS),
+        optional: flag(asset.has_colors, HAS_COLORS) | flag(partnered, HAS_PARTNERS),
         splats: count(records.len())?,
         straight: count(straight)?,
         curved: count(curved)?,

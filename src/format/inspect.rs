@@ -1,6 +1,6 @@
 //! What a file holds, without decoding it.
 
-use super::chunks::{COLOR_ID, STREAM_IDS, most_bytes};
+use super::chunks::{COLOR_ID, PARTNERS_ID, STREAM_IDS, most_bytes};
 use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, HAS_COLORS, VERSION, read_head};
 use super::limits::Limits;
 use super::read::open;
@@ -61,7 +61,7 @@ pub struct Absent {
 }
 
 /// What may be absent: where it would be, what it is, why it is not there.
-const OPTIONAL: [([u8; 4], &str, &str); 9] = [
+const OPTIONAL: [([u8; 4], &str, &str); 10] = [
     (STREAM_IDS[Stream::Kind as usize], "kinds", "all splats are of one kind"),
     (STREAM_IDS[Stream::Shape as usize], "smaller radii", "every splat is round"),
     (STREAM_IDS[Stream::Bend as usize], "curvatures", "every splat is flat"),
@@ -71,6 +71,7 @@ const OPTIONAL: [([u8; 4], &str, &str); 9] = [
     (STREAM_IDS[Stream::Ctrl as usize], "clip control points", "no clip curve is curved"),
     (STREAM_IDS[Stream::Rho as usize], "clip shapes", "no clip curve is curved"),
     (COLOR_ID, "colours", "the splats have none"),
+    (PARTNERS_ID, "clip partners", "no splat is cut by another"),
 ];
 
 /// Sums up a file; checks header, table and checksums but decodes no chunk.

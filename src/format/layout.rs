@@ -25,6 +25,8 @@ pub const HAS_CLIPS: u32 = 2;
 pub const KNOWN_REQUIRED: u32 = HAS_QUADRICS | HAS_CLIPS;
 /// Optional feature: there are colours.
 pub const HAS_COLORS: u32 = 1;
+/// Optional feature: there are clip partners.
+pub const HAS_PARTNERS: u32 = 2;
 
 /// Chunk flag: a reader that does not know the chunk must refuse the file.
 pub const CHUNK_REQUIRED: u8 = 1;

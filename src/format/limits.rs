@@ -13,13 +13,21 @@ pub struct Limits {
     pub splats: u64,
     /// Clip curves; each takes about 60 bytes of memory. Default `2^22`.
     pub clips: u64,
+    /// Pairs of clip partners; each takes about 400 bytes of memory. Default `2^20`.
+    pub partners: u64,
     /// Bytes of all chunks after zstd. Default `2^28`.
     pub decoded_bytes: u64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { file_bytes: 1 << 30, splats: 1 << 22, clips: 1 << 22, decoded_bytes: 1 << 28 }
+        Self {
+            file_bytes: 1 << 30,
+            splats: 1 << 22,
+            clips: 1 << 22,
+            partners: 1 << 20,
+            decoded_bytes: 1 << 28,
+        }
     }
 }
 

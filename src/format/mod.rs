@@ -22,6 +22,7 @@
 //!     radii: DVec2::new(0.05, 0.04),
 //!     curvature: DVec2::new(2.0, -1.0),
 //!     clips: Vec::new(),
+//!     partners: Vec::new(),
 //!     color: [255; 3],
 //! };
 //! let asset = Asset {
@@ -52,6 +53,7 @@ mod layout;
 mod limits;
 mod octahedral;
 mod order;
+mod partners;
 mod place;
 mod predict;
 pub mod quantize;

@@ -25,12 +25,14 @@ pub const MORTON_END: u128 = 1 << (3 * CELL_BITS);
 
 /// Sorts records by Morton code, then by all their numbers.
 ///
-/// Equal records are equal in all they say, so a set of splats has one order.
+/// Equal records are equal in all they say but their partners, so a set of splats has one order.
+/// Also gives the place that each record had before.
 #[must_use]
-pub fn sorted(records: Vec<Record>) -> Vec<Record> {
-    let mut keyed: Vec<_> = records.into_iter().map(|record| (morton(record.cell), record)).collect();
+pub fn sorted(records: Vec<Record>) -> (Vec<Record>, Vec<u32>) {
+    let keyed = records.into_iter().zip(0..).map(|(record, n)| (morton(record.cell), record, n));
+    let mut keyed: Vec<_> = keyed.collect();
     keyed.sort_unstable();
-    keyed.into_iter().map(|(_, record)| record).collect()
+    keyed.into_iter().map(|(_, record, n)| (record, n)).unzip()
 }
 
 #[cfg(test)]

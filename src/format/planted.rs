@@ -80,6 +80,7 @@ pub fn on_bumpy(direction: DVec3, e: f64, radius: f64) -> Splat {
         radii: shape * radius * e,
         curvature,
         clips: Vec::new(),
+        partners: Vec::new(),
         color: [255; 3],
     }
 }

@@ -28,6 +28,7 @@ fn wild(random: &mut Random, e: f64) -> Splat {
         radii,
         curvature,
         clips: Vec::new(),
+        partners: Vec::new(),
         color: [255; 3],
     }
 }

@@ -1,9 +1,10 @@
 //! From the bytes of a file to an asset.
 
-use super::chunks::{BITS_ID, COLOR_ID, Chunks, STREAM_IDS};
+use super::chunks::{BITS_ID, COLOR_ID, Chunks, PARTNERS_ID, STREAM_IDS};
 use super::color;
-use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_QUADRICS, Header, read_head};
+use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, read_head};
 use super::limits::Limits;
+use super::partners;
 use super::predict::History;
 use super::record::Record;
 use super::tape::{Reader, STREAMS};
@@ -26,6 +27,7 @@ pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Asset> {
     let mut splats = splats(&header, &chunks)?;
     let has_colors = header.optional & HAS_COLORS != 0;
     paint(&mut splats, &chunks, has_colors)?;
+    link(&mut splats, &header, &chunks, limits)?;
     Ok(Asset {
         frame: header.frame(),
         diagonal: header.diagonal,
@@ -89,6 +91,15 @@ fn paint(splats: &mut [Splat], chunks: &Chunks<'_>, has_colors: bool) -> Result<
         splat.color = colors.get(n).copied().unwrap_or([255; 3]);
     }
     Ok(())
+}
+
+/// Sets the clip partners.
+fn link(splats: &mut [Splat], header: &Header, chunks: &Chunks<'_>, limits: &Limits) -> Result<()> {
+    let bytes = chunks.bytes(PARTNERS_ID)?;
+    if bytes.is_empty() == (header.optional & HAS_PARTNERS != 0) {
+        return Err(Error::format("optional features", "differ from the chunk PART in the file"));
+    }
+    if bytes.is_empty() { Ok(()) } else { partners::join(&bytes, splats, header.max_error, limits) }
 }
 
 /// What the records turned out to hold, to be compared with what the header states.

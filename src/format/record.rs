@@ -117,6 +117,7 @@ impl Grids {
             curvature: DVec2::new(record.bend[0] as f64 * step, record.bend[1] as f64 * step)
                 / (radii * radii),
             clips: record.clips.iter().map(|clip| self.clip_curve(clip, record.sizes)).collect(),
+            partners: Vec::new(),
             color: record.color,
         }
     }

@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::chunks::{BITS_ID, COLOR_ID, STREAM_IDS};
+use super::chunks::{BITS_ID, COLOR_ID, PARTNERS_ID, STREAM_IDS};
 use super::codec;
 use super::color;
 use super::grid::{GUESS_BEND, GUESS_SPIN, Grids};
 use super::header::{check_asset, header_of};
 use super::layout::{CHUNK_REQUIRED, Entry, write_head};
+use super::limits::Limits;
 use super::order;
+use super::partners;
 use super::predict::History;
 use super::quantize::Quantizer;
 use super::record::Record;
@@ -37,8 +39,12 @@ pub fn encode(asset: &Asset) -> Result<Vec<u8>> {
     check_asset(asset)?;
     let quantizer = Quantizer::new(asset.max_error);
     let records = asset.splats.par_iter().map(|splat| record(&quantizer, splat, asset.has_colors));
-    let records = order::sorted(records.collect::<Result<Vec<_>>>()?);
-    let (grids, chunks) = fewest(&quantizer.grids, &records, asset.has_colors)?;
+    let (records, order) = order::sorted(records.collect::<Result<Vec<_>>>()?);
+    let (grids, mut chunks) = fewest(&quantizer.grids, &records, asset.has_colors)?;
+    let partners = partners::split(&asset.splats, &order)?;
+    if !partners.is_empty() {
+        chunks.push(codec::code(PARTNERS_ID, 0, &partners)?);
+    }
     let header = header_of(asset, &grids, &records, chunks.len())?;
     let table: Vec<Entry> = chunks.iter().map(|(entry, _)| *entry).collect();
     let mut out = write_head(&header, &table);
@@ -56,8 +62,12 @@ pub fn snap(asset: &Asset) -> Result<Asset> {
     check_asset(asset)?;
     let quantizer = Quantizer::new(asset.max_error);
     let records = asset.splats.par_iter().map(|splat| record(&quantizer, splat, asset.has_colors));
-    let records = order::sorted(records.collect::<Result<Vec<_>>>()?);
-    let splats: Vec<Splat> = records.iter().map(|record| quantizer.grids.splat(record)).collect();
+    let (records, order) = order::sorted(records.collect::<Result<Vec<_>>>()?);
+    let mut splats: Vec<Splat> = records.iter().map(|record| quantizer.grids.splat(record)).collect();
+    let partners = partners::split(&asset.splats, &order)?;
+    if !partners.is_empty() {
+        partners::join(&partners, &mut splats, asset.max_error, &Limits::default())?;
+    }
     Ok(Asset { splats, ..asset.clone() })
 }
 

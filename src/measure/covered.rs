@@ -55,6 +55,8 @@ impl<'a> Insides<'a> {
         inner.min_element() > 0.0
             && (uv / inner).length_squared() <= 1.0
             && (local.z - splat.height(uv)).abs() <= APART * self.max_error
-            && around.chain([uv]).all(|uv| !conics.iter().any(|conic| conic.cuts(uv)))
+            && around
+                .chain([uv])
+                .all(|uv| !conics.iter().any(|conic| conic.cuts(uv)) && !splat.partners_cut(uv))
     }
 }

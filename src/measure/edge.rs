@@ -37,9 +37,13 @@ type Line = [DVec3; 2];
 /// the other kind, wherever that lies: an edge that no splat is cut at is as far off as the next
 /// border. Where nothing at all is cut, every sample of the lines is one diagonal off.
 ///
-/// `None` exactly where the lines have no length: there is nothing to follow.
+/// `None` where the lines have no length, so that there is nothing to follow, and where splats are
+/// cut by clip partners, whose edges are no curves of a border.
 #[must_use]
 pub fn edge(asset: &Asset, lines: &[Vec<DVec3>]) -> Option<Distances> {
+    if asset.splats.iter().any(|splat| !splat.partners.is_empty()) {
+        return None;
+    }
     let lines: Vec<Line> =
         lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]]).collect();
     let borders: Vec<Vec<Line>> =

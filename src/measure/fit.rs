@@ -78,7 +78,8 @@ fn covered(splat: &Splat, grid: &PointGrid, points: &[Vec3], reach: f64) -> Vec<
             let uv = local.truncate();
             let distance = (local.z - splat.height(uv)).abs();
             let inside = distance <= reach && splat.ellipse(uv) <= 1.0;
-            (inside && !conics.iter().any(|conic| conic.cuts(uv))).then_some((point, distance))
+            let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv)) || splat.partners_cut(uv);
+            (inside && !cut(uv)).then_some((point, distance))
         })
         .collect()
 }
@@ -133,6 +134,7 @@ mod tests {
             curvature: DVec2::new(0.8, -0.5),
             // Cuts what lies below the chord along v = 0.
             clips: vec![ClipCurve::chord(std::f64::consts::PI, 0.0)],
+            partners: Vec::new(),
             color: [255; 3],
         };
         let at = |u: f64, v: f64, off: f64| {

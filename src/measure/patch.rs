@@ -49,7 +49,7 @@ impl<'a> Patch<'a> {
         let (below, above) = heights(splat, low, high);
         Self {
             splat,
-            area: area(splat, &pieces),
+            area: area(splat, &pieces) * left(splat),
             border: pieces.iter().map(|piece| Segment::new(splat, piece)).collect(),
             conics,
             low: low.extend(below),
@@ -59,7 +59,9 @@ impl<'a> Patch<'a> {
 
     /// Whether a place lies in the ellipse and is not cut away.
     pub(super) fn covers(&self, uv: DVec2) -> bool {
-        self.splat.ellipse(uv) <= 1.0 && !self.conics.iter().any(|conic| conic.cuts(uv))
+        self.splat.ellipse(uv) <= 1.0
+            && !self.conics.iter().any(|conic| conic.cuts(uv))
+            && !self.splat.partners_cut(uv)
     }
 
     /// Places of the patch about a step from one of its own.
@@ -108,7 +110,7 @@ impl<'a> Patch<'a> {
         for segment in &self.border {
             if segment.least(p) < best.distance {
                 let (uv, distance) = segment.nearest(curvature, p);
-                if distance < best.distance {
+                if distance < best.distance && !self.splat.partners_cut(uv) {
                     best = Foot { uv, distance };
                 }
             }
@@ -125,6 +127,24 @@ impl<'a> Patch<'a> {
     fn foot(&self, p: DVec3, uv: DVec2) -> Foot {
         Foot { uv, distance: uv.extend(self.splat.height(uv)).distance(p) }
     }
+}
+
+/// Places across a splat, each way, that tell how much of it partners leave.
+const ACROSS: u32 = 48;
+
+/// About which share of a splat its partners leave: exact where there are none. Their cuts are no
+/// curves of the border, which goes on through what they cut away.
+fn left(splat: &Splat) -> f64 {
+    if splat.partners.is_empty() {
+        return 1.0;
+    }
+    let at = |n: u32| f64::from(2 * n + 1) / f64::from(ACROSS) - 1.0;
+    let places = (0..ACROSS).flat_map(|x| (0..ACROSS).map(move |y| DVec2::new(at(x), at(y)) * splat.radii));
+    let kept =
+        |uv: &DVec2| splat.ellipse(*uv) <= 1.0 && !splat.clips.iter().any(|clip| clip.cuts(*uv, splat.radii));
+    let places: Vec<DVec2> = places.filter(kept).collect();
+    let shown = places.iter().filter(|&&uv| !splat.partners_cut(uv)).count();
+    shown as f64 / places.len().max(1) as f64
 }
 
 /// Least and greatest height of the quadric over a box.

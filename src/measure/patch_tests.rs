@@ -51,7 +51,7 @@ fn any_splat(dice: &mut Dice) -> Splat {
     let clips = (0..dice.pick(&[0, 0, 1, 1, 2, 3])).map(|_| clip(dice)).collect();
     let axes = DMat3::from_rotation_x(dice.within(0.0, 6.0)) * DMat3::from_rotation_z(dice.within(0.0, 6.0));
     let center = DVec3::new(dice.within(-1.0, 1.0), 0.3, -0.2);
-    Splat { center, axes, radii, curvature, clips, color: [255; 3] }
+    Splat { center, axes, radii, curvature, clips, partners: Vec::new(), color: [255; 3] }
 }
 
 /// Points near the surface, far from it, over its axes, and at its centres of curvature.

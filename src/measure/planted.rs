@@ -18,7 +18,15 @@ pub(super) fn asset(splats: Vec<Splat>) -> Asset {
 
 /// A flat splat in the plane `z = 0`.
 pub(super) fn flat(center: DVec3, radii: DVec2, clips: Vec<ClipCurve>) -> Splat {
-    Splat { center, axes: DMat3::IDENTITY, radii, curvature: DVec2::ZERO, clips, color: [255; 3] }
+    Splat {
+        center,
+        axes: DMat3::IDENTITY,
+        radii,
+        curvature: DVec2::ZERO,
+        clips,
+        partners: Vec::new(),
+        color: [255; 3],
+    }
 }
 
 /// A mesh of the default frame.
@@ -73,6 +81,7 @@ pub(super) fn sphere(radius: f64, count: u32, reach: f64) -> Vec<Splat> {
             radii: DVec2::splat(reach),
             curvature: DVec2::splat(-0.5 / radius),
             clips: vec![],
+            partners: Vec::new(),
             color: [255; 3],
         }
     };

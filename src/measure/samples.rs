@@ -133,10 +133,10 @@ fn inside(patch: &Patch<'_>, count: usize, weight: f64, seed: usize) -> Vec<Plac
 /// Places along a patch's border.
 fn on_border<'a>(patch: &'a Patch<'_>, counts: &'a [usize]) -> impl Iterator<Item = Place> + 'a {
     patch.border.iter().zip(counts).flat_map(move |(segment, &count)| {
-        (0..count).map(move |n| {
+        (0..count).filter_map(move |n| {
             let t = n as f64 / count as f64;
             let local = segment.lifted(patch.splat.curvature, t).0;
-            (patch.splat.to_model(local), 0.0)
+            (!patch.splat.partners_cut(local.truncate())).then(|| (patch.splat.to_model(local), 0.0))
         })
     })
 }

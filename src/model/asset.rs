@@ -42,7 +42,7 @@ pub struct Counts {
     pub flat: usize,
     /// Pieces of a quadric.
     pub quadric: usize,
-    /// Those with at least one clip curve, flat or quadric.
+    /// Those with at least one clip curve or clip partner, flat or quadric.
     pub clipped: usize,
     /// Clip curves of five numbers.
     pub curved_clips: usize,
@@ -61,7 +61,7 @@ impl Asset {
                 Kind::Quadric => counts.quadric += 1,
             }
             let straight = splat.clips.iter().filter(|clip| clip.is_straight()).count();
-            counts.clipped += usize::from(!splat.clips.is_empty());
+            counts.clipped += usize::from(splat.is_clipped());
             counts.straight_clips += straight;
             counts.curved_clips += splat.clips.len() - straight;
         }

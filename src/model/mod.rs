@@ -5,5 +5,6 @@ pub mod clip_curve;
 pub mod cloud;
 pub mod frame;
 pub mod mesh;
+pub mod partner;
 pub mod polyline;
 pub mod splat;

@@ -8,6 +8,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::clip_curve::ClipCurve;
+use super::partner::{self, Group};
 
 /// One splat, in model units.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,8 @@ pub struct Splat {
     pub curvature: DVec2,
     /// What is cut away is the union of what each cuts; usually none or one.
     pub clips: Vec<ClipCurve>,
+    /// Splats across an edge that cut it too, in groups; usually none.
+    pub partners: Vec<Group>,
     /// Mean colour of what it covers, sRGB; white when the asset has no colours.
     pub color: [u8; 3],
 }
@@ -82,10 +85,24 @@ impl Splat {
         (uv / self.radii).length_squared()
     }
 
-    /// Whether `(u, v)` lies in the ellipse and no clip curve cuts it away.
+    /// Whether `(u, v)` lies in the ellipse and neither clip curve nor partner cuts it away.
     #[must_use]
     pub fn covers(&self, uv: DVec2) -> bool {
-        self.ellipse(uv) <= 1.0 && !self.clips.iter().any(|clip| clip.cuts(uv, self.radii))
+        self.ellipse(uv) <= 1.0
+            && !self.clips.iter().any(|clip| clip.cuts(uv, self.radii))
+            && !self.partners_cut(uv)
+    }
+
+    /// Whether the partners cut the place of the quadric over `(u, v)` away.
+    #[must_use]
+    pub fn partners_cut(&self, uv: DVec2) -> bool {
+        !self.partners.is_empty() && partner::cuts(&self.partners, self.surface_point(uv))
+    }
+
+    /// Whether anything cuts it.
+    #[must_use]
+    pub fn is_clipped(&self) -> bool {
+        !self.clips.is_empty() || !self.partners.is_empty()
     }
 
     /// Radius of the least sphere around `C` that is sure to hold the whole splat.
@@ -108,6 +125,7 @@ mod tests {
             radii: DVec2::new(0.5, 0.25),
             curvature: DVec2::new(-1.0, 0.5),
             clips: Vec::new(),
+            partners: Vec::new(),
             color: [255; 3],
         }
     }

@@ -6,7 +6,7 @@
 //!
 //! 1. `project` bounds a splat on the screen;
 //! 2. `intersect` casts a pixel's ray on the splat's quadric;
-//! 3. `clip` drops what a clip curve cuts away;
+//! 3. `clip` drops what a clip curve cuts away, `partner` what clip partners do;
 //! 4. `composite` keeps the nearest hit of a pixel, then blends the splats that lie within a
 //!    depth band behind it and face the same way;
 //! 5. `shade` lights the blended normal and colour.
@@ -28,6 +28,7 @@ pub mod settings;
 
 mod composite;
 mod intersect;
+mod partner;
 mod project;
 mod shade;
 mod smooth;

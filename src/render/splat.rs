@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::constants::{self, MATTE};
 use super::eye::{Eye, Ray};
 use super::intersect::{self, LocalRay};
+use super::partner::{self, LocalPartner, locals};
 use super::project::{self, Bound, Prism};
 use super::shade;
 use super::tiles::{Hit, Look, Scene};
@@ -27,6 +28,8 @@ struct Cap {
     near: f64,
     /// Clip curves over the unit disc.
     clips: Vec<Conic>,
+    /// Clip partners, in groups.
+    partners: Vec<Vec<LocalPartner>>,
     color: Vec3,
     low: f64,
     high: f64,
@@ -75,7 +78,7 @@ impl Cap {
         );
         let [low, high] = heights(splat);
         Self {
-            class: constants::class(splat.kind() == Kind::Quadric, !splat.clips.is_empty()),
+            class: constants::class(splat.kind() == Kind::Quadric, splat.is_clipped()),
             center,
             axes,
             radii: splat.radii,
@@ -84,6 +87,7 @@ impl Cap {
             reach: splat.bounding_radius(),
             near: eye.near - center.z,
             clips: splat.clips.iter().map(|clip| unit_conic(clip, splat.radii)).collect(),
+            partners: splat.partners.iter().map(|group| locals(group, splat)).collect(),
             color: linear_color(splat, has_colors),
             low,
             high,
@@ -107,7 +111,9 @@ impl Cap {
         let uv = ray.at(s).truncate();
         let unit = uv * self.inverse_radii;
         let ellipse = unit.length_squared();
-        let inside = ellipse <= 1.0 && !self.clips.iter().any(|clip| clip.cuts(unit));
+        let inside = ellipse <= 1.0
+            && !self.clips.iter().any(|clip| clip.cuts(unit))
+            && !partner::clipped_away(&self.partners, ray.at(s));
         inside.then_some(Hit { depth: self.center.z + s, at: uv, ellipse })
     }
 }

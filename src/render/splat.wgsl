@@ -10,6 +10,10 @@ struct Record {
     @location(5) color: vec3<f32>,
     // index and class, first conic, number of conics
     @location(6) words: vec3<u32>,
+//#if PARTNERED
+    // first partner, number of partners
+    @location(7) partners: vec2<u32>,
+//#end
 }
 
 // The splat in view coordinates, the same for all its fragments.
@@ -24,6 +28,9 @@ struct Cap {
     @location(5) @interpolate(flat) words: vec3<u32>,
 //#if COLORED
     @location(6) @interpolate(flat) color: vec3<f32>,
+//#end
+//#if PARTNERED
+    @location(7) @interpolate(flat) partners: vec2<u32>,
 //#end
 }
 
@@ -42,6 +49,9 @@ fn vertex(record: Record, @builtin(vertex_index) corner: u32) -> Cap {
     cap.words = record.words;
 //#if COLORED
     cap.color = record.color;
+//#end
+//#if PARTNERED
+    cap.partners = record.partners;
 //#end
     let radii = record.shape.xy;
 //#if QUADRIC
@@ -86,6 +96,11 @@ fn covered(cap: Cap, ray: LocalRay, s: f32) -> Hit {
 //#if CLIPPED
     if hit.found {
         hit.found = !clipped_away(cap.words.y, cap.words.z, unit);
+    }
+//#end
+//#if PARTNERED
+    if hit.found {
+        hit.found = !partners_cut(cap.partners.x, cap.partners.y, ray.origin + s * ray.direction);
     }
 //#end
     return hit;

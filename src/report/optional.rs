@@ -8,7 +8,7 @@ use crate::model::asset::{Asset, Counts};
 /// One optional thing.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Optional {
-    /// What: `curvature`, `clips`, `curved_clips`, `colors`, `tilt`.
+    /// What: `curvature`, `clips`, `curved_clips`, `partners`, `colors`, `tilt`.
     pub name: String,
     /// Whether the file has it.
     pub present: bool,
@@ -26,10 +26,12 @@ pub fn all(asset: &Asset, counts: &Counts, origin: Option<&Origin>) -> Vec<Optio
         present,
         reason: (!present).then(|| reason.into()),
     };
+    let partnered = asset.splats.iter().any(|splat| !splat.partners.is_empty());
     vec![
         thing("curvature", counts.quadric > 0, no_curvature(origin)),
         thing("clips", counts.clipped > 0, no_clips(origin)),
         thing("curved_clips", counts.curved_clips > 0, no_curved_clips(counts, origin)),
+        thing("partners", partnered, no_partners(origin)),
         thing("colors", asset.has_colors, no_colors(origin)),
         thing("tilt", false, "the fit turns each normal until the linear terms of its quadric vanish"),
     ]
@@ -54,10 +56,20 @@ fn no_clips(origin: Option<&Origin>) -> &'static str {
 fn no_curved_clips(counts: &Counts, origin: Option<&Origin>) -> &'static str {
     match origin {
         _ if counts.clipped == 0 => "no splat is cut",
+        Some(origin) if origin.options.clips == "partners" => {
+            "splats are cut by their partners as asked (--clips partners)"
+        }
         Some(origin) if origin.options.clips == "straight" => {
             "every cut is straight as asked (--clips straight)"
         }
         _ => "every cut is straight within the error budget",
+    }
+}
+
+fn no_partners(origin: Option<&Origin>) -> &'static str {
+    match origin {
+        Some(origin) if origin.options.clips == "partners" => "no splat meets another across an edge",
+        _ => "splats are cut by curves where there are edges (--clips curved)",
     }
 }
 

@@ -14,8 +14,15 @@ use crate::model::splat::Splat;
 
 fn asset_of(curvature: DVec2, clips: Vec<ClipCurve>) -> Asset {
     let radii = DVec2::new(0.5, 0.3);
-    let splat =
-        Splat { center: DVec3::ZERO, axes: DMat3::IDENTITY, radii, curvature, clips, color: [255; 3] };
+    let splat = Splat {
+        center: DVec3::ZERO,
+        axes: DMat3::IDENTITY,
+        radii,
+        curvature,
+        clips,
+        partners: Vec::new(),
+        color: [255; 3],
+    };
     let frame = Frame { origin: DVec3::new(1.0, 2.0, 3.0), exponent: 2 };
     let fit = asset::Accuracy { rms: 1e-4, p99: 2e-4, max: 3e-4 };
     Asset { frame, diagonal: 2.0, max_error: 1e-3, fit, has_colors: false, splats: vec![splat; 4] }

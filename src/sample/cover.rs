@@ -85,7 +85,7 @@ pub fn cover(
     regions: &Regions,
     candidates: Vec<Candidate>,
     effort: u8,
-) -> (Vec<Splat>, Choice) {
+) -> (Vec<Candidate>, Choice) {
     let areas: Vec<f64> = (0..grower.surface.pieces.len() as u32).map(|p| grower.surface.area(p)).collect();
     let mut choice = Choice::default();
     let mut times = vec![0_u32; areas.len()];
@@ -97,7 +97,7 @@ pub fn cover(
     choice.merged = improve(grower, regions, &mut cover, effort);
     let Cover { candidates, chosen, .. } = cover;
     choice.low_rank = chosen.iter().filter(|&&index| candidates[index].rank < 6).count();
-    (chosen.into_iter().map(|index| candidates[index].splat.clone()).collect(), choice)
+    (chosen.into_iter().map(|index| candidates[index].clone()).collect(), choice)
 }
 
 impl Cover {
@@ -248,9 +248,10 @@ mod tests {
             radii: DVec2::ONE,
             curvature: DVec2::ZERO,
             clips: Vec::new(),
+            partners: Vec::new(),
             color: [u8::MAX; 3],
         };
-        Candidate { splat, pieces: pieces.to_vec(), rank: 6 }
+        Candidate { splat, end_clips: Vec::new(), pieces: pieces.to_vec(), rank: 6 }
     }
 
     #[test]

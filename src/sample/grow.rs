@@ -12,7 +12,7 @@ use super::outline::{Outline, outlines};
 use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
-use crate::fit::clip::{self, Care};
+use crate::fit::clip::{self, Care, Clips};
 use crate::fit::ellipse::{circumellipse, crossings};
 use crate::fit::pose::{Fitting, Pose, Principal, Shapes, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
@@ -41,6 +41,11 @@ const LEAST_OUTSET: f64 = 1.01;
 
 /// No radius grows beyond this, in model units: the model lies within `[-1, 1]³`.
 const LONGEST_RADIUS: f64 = 4.0;
+
+/// A splat that partners cut reaches at most this many times as far along each axis as what it
+/// covers: all of it beyond a line shows that no partner cuts, and they are made for places near
+/// the line. (An ellipse around a rectangle reaches 1.42 times as far.)
+const MOST_REACH: f64 = 3.0;
 
 /// The least radius worth trying, as a share of the budget, however small the piece.
 const LEAST_SHARE: f64 = 0.02;
@@ -90,6 +95,9 @@ pub struct Grower<'a> {
     pub budget: Budget,
     /// What splats may be pieces of.
     pub shapes: Shapes,
+    /// Where nothing lies across a border ([`super::outline::open_sides`]), for splats that
+    /// partners cut; else empty.
+    pub open: Vec<bool>,
     /// Splats are rounded before they are judged and cut, so that storing them changes
     /// nothing that was judged.
     pub round: &'a Round<'a>,
@@ -105,6 +113,8 @@ pub(super) struct Domain {
     pub(super) rank: u8,
     /// How many points the ellipse reaches and the quadric covers.
     members: usize,
+    /// How far from the centre they lie along each axis.
+    extent: DVec2,
 }
 
 impl Grower<'_> {
@@ -128,7 +138,7 @@ impl Grower<'_> {
             // next point of the surface may lie a few steps off.
             for _ in 0..PATIENCE {
                 let radii = grown.radii * factor;
-                if radii.max_element() > LONGEST_RADIUS {
+                if radii.max_element() > LONGEST_RADIUS || self.overreaches(radii, &grown) {
                     return false;
                 }
                 match self.attempt(&grown.pose, radii, seeds, region) {
@@ -204,7 +214,16 @@ impl Grower<'_> {
         }
         let near = |member: &&Member| self.near(fitted.curvature, member.local, 1.0);
         let members = region.members.iter().filter(near).count();
-        Ok(Domain { pose: fitted.pose, radii, curvature: fitted.curvature, rank: fitted.rank, members })
+        let extents = region.members.iter().filter(near).map(|member| member.local.truncate().abs());
+        let extent = extents.fold(DVec2::ZERO, DVec2::max);
+        let Principal { pose, curvature, rank, .. } = fitted;
+        Ok(Domain { pose, radii, curvature, rank, members, extent })
+    }
+
+    /// Whether a domain would grow too far beyond what it covers for its partners to cut it.
+    fn overreaches(&self, radii: DVec2, grown: &Domain) -> bool {
+        let beyond = (radii - MOST_REACH * grown.extent).cmpgt(DVec2::ZERO) & radii.cmpgt(grown.radii);
+        self.budget.clip.clips == Clips::Partners && beyond.any()
     }
 
     /// The quadric of members and rim, in its principal frame; `None` if it is too steep.
@@ -287,9 +306,9 @@ impl Grower<'_> {
         care: Care,
         region: &Region,
     ) -> Result<Vec<ClipCurve>, Stop> {
-        let outlines = outlines(self.surface, region, pose);
+        let outlines = outlines(self.surface, region, pose, &self.open);
         let mut clips = Vec::new();
-        for Outline { points, closed } in &outlines {
+        for Outline { points, closed, .. } in &outlines {
             clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, care).ok_or(Stop::Clip)?);
             if clips.len() > MOST_CLIPS {
                 return Err(Stop::Clip);
@@ -305,5 +324,19 @@ impl Grower<'_> {
         } else {
             Err(Stop::Stray)
         }
+    }
+
+    /// Of the curves that [`Self::clips`] gives, those along which the surface ends, if it is
+    /// partners that cut along feature lines. Around a corner of both kinds they are kept.
+    pub(super) fn end_clips(&self, pose: &Pose, outer: DVec2, region: &Region) -> Option<Vec<ClipCurve>> {
+        let mut clips = Vec::new();
+        if self.budget.clip.clips == Clips::Partners {
+            for Outline { points, closed, .. } in
+                outlines(self.surface, region, pose, &self.open).iter().filter(|outline| outline.ends)
+            {
+                clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, Care::Nearest)?);
+            }
+        }
+        Some(clips)
     }
 }

@@ -13,6 +13,29 @@ pub struct Outline {
     pub points: Vec<DVec2>,
     /// Whether it is a loop; then its first point is not repeated.
     pub closed: bool,
+    /// Whether the surface ends at some of it, so that nothing lies across.
+    pub ends: bool,
+}
+
+/// For each point, whether nothing lies across the border's side that starts there: it is a
+/// border of the surface, not a feature line.
+#[must_use]
+pub fn open_sides(surface: &Surface) -> Vec<bool> {
+    let side = |from: usize| {
+        let to = surface.border_next[from];
+        let place = |point: u32| surface.places[point as usize];
+        (to != NONE).then(|| {
+            let (a, b) = (place(from as u32), place(to));
+            (a.min(b), a.max(b))
+        })
+    };
+    let mut sides: Vec<(u32, u32)> = (0..surface.points.len()).filter_map(side).collect();
+    sides.sort_unstable();
+    let count = |side: (u32, u32)| {
+        let from = sides.partition_point(|&other| other < side);
+        sides[from..].iter().take_while(|&&other| other == side).count()
+    };
+    (0..surface.points.len()).map(|from| side(from).is_some_and(|side| count(side) == 1)).collect()
 }
 
 /// The borders that pass the region's members and rim, each chained as far as those go and
@@ -21,9 +44,10 @@ pub struct Outline {
 /// Only lines that the walk over the surface met are here. A line of another patch that
 /// runs through the splat's box bounds nothing (Ivo 2020, Fig. 26) and is never met. Where
 /// the walk met both sides of a line, around the end of one that ends inside the surface,
-/// the line bounds nothing either: both sides are the splat's own.
+/// the line bounds nothing either: both sides are the splat's own. `open` is as
+/// [`open_sides`] has it, or empty where nobody asks for that.
 #[must_use]
-pub fn outlines(surface: &Surface, region: &Region, pose: &Pose) -> Vec<Outline> {
+pub fn outlines(surface: &Surface, region: &Region, pose: &Pose, open: &[bool]) -> Vec<Outline> {
     let sides = one_sided(surface, sides(surface, region));
     let next = |point: u32| {
         let at = sides.partition_point(|side| side.0 < point);
@@ -37,7 +61,7 @@ pub fn outlines(surface: &Surface, region: &Region, pose: &Pose) -> Vec<Outline>
     let starts = sides.iter().map(|side| side.0).filter(|point| followed.binary_search(point).is_err());
     // Whatever no start leads to is a loop; those come second.
     for start in starts.chain(sides.iter().map(|side| side.0)) {
-        let mut points = Vec::new();
+        let (mut points, mut ends) = (Vec::new(), false);
         let mut point = start;
         while let Some(after) = next(point) {
             let at = sides.partition_point(|side| side.0 < point);
@@ -45,6 +69,7 @@ pub fn outlines(surface: &Surface, region: &Region, pose: &Pose) -> Vec<Outline>
                 break;
             }
             points.push(flat(point));
+            ends |= open.get(point as usize).copied().unwrap_or_default();
             point = after;
         }
         if !points.is_empty() {
@@ -52,7 +77,7 @@ pub fn outlines(surface: &Surface, region: &Region, pose: &Pose) -> Vec<Outline>
             if !closed {
                 points.push(flat(point));
             }
-            found.push(Outline { points, closed });
+            found.push(Outline { points, closed, ends });
         }
     }
     found

@@ -34,5 +34,7 @@ pub fn over(grower: &Grower, piece: u32) -> Option<Candidate> {
         splat.clips = clip::fit(&outline, true, splat.radii, &budget.clip, Care::Nearest).unwrap_or_default();
     }
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
-    Some(Candidate { splat, pieces: vec![piece], rank: 3 })
+    // What ends at a triangle's own sides is cut by itself, whatever lies across.
+    let end_clips = splat.clips.clone();
+    Some(Candidate { splat, end_clips, pieces: vec![piece], rank: 3 })
 }

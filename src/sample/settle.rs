@@ -9,7 +9,7 @@ use super::margin::disc_inside;
 use super::region::Region;
 use crate::fit::clip::Care;
 use crate::fit::pose::Pose;
-use crate::model::clip_curve::Conic;
+use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
 use crate::tolerance::FIT_SHARE;
 
@@ -29,8 +29,10 @@ const FLAT_SAGITTA: f64 = 2.0;
 /// A splat that keeps the budget, and what it covers.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The splat.
+    /// The splat, cut along feature lines and where the surface ends.
     pub splat: Splat,
+    /// The latter of its clip curves, where partners are to make the other cuts; else none.
+    pub end_clips: Vec<ClipCurve>,
     /// The pieces it covers, ascending.
     pub pieces: Vec<u32>,
     /// How many of the fit's six terms the points determined.
@@ -75,6 +77,7 @@ pub(super) fn rounded(grower: &Grower, pose: &Pose, radii: DVec2, curvature: DVe
         radii,
         curvature,
         clips: Vec::new(),
+        partners: Vec::new(),
         color: [u8::MAX; 3],
     })
 }
@@ -96,13 +99,14 @@ fn finish(
     if !backed(grower, &pose, splat.radii, splat.curvature, &splat.clips, region, Look::Fine) {
         return None;
     }
+    let end_clips = grower.end_clips(&pose, splat.radii, region)?;
     let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
     let trusted = grower.budget.trusted(splat.radii - more);
     let domain = Covering { grower, splat: &splat, conics, trusted };
     let meshed = grower.surface.spots.is_empty();
     let pieces = if meshed { domain.triangles(region) } else { domain.spots(region) }?;
     splat.color = mean_color(grower, &pieces);
-    Some(Candidate { splat, pieces, rank })
+    Some(Candidate { splat, end_clips, pieces, rank })
 }
 
 /// A splat and what may tell what it covers.

@@ -30,6 +30,7 @@ fn ball() -> Asset {
             radii: DVec2::splat(0.23),
             curvature: DVec2::splat(-0.5 / 0.8),
             clips: vec![],
+            partners: Vec::new(),
             color: [255; 3],
         });
     }

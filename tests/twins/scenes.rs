@@ -4,6 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 use qsplat::model::asset::{Accuracy, Asset};
 use qsplat::model::clip_curve::ClipCurve;
 use qsplat::model::frame::Frame;
+use qsplat::model::partner::{Cut, Partner};
 use qsplat::model::splat::Splat;
 
 /// An asset of these splats over the cube from -1 to 1.
@@ -27,7 +28,7 @@ pub fn axes(normal: DVec3) -> DMat3 {
 
 /// A splat without clips.
 pub fn splat(center: DVec3, axes: DMat3, radii: DVec2, curvature: DVec2) -> Splat {
-    Splat { center, axes, radii, curvature, clips: Vec::new(), color: [255; 3] }
+    Splat { center, axes, radii, curvature, clips: Vec::new(), partners: Vec::new(), color: [255; 3] }
 }
 
 /// `count` even directions (a Fibonacci spiral).
@@ -88,6 +89,25 @@ pub fn corner() -> Asset {
         Splat { clips: vec![clip], ..splat(center, DMat3::from_cols(i, j, k), radii, DVec2::ZERO) }
     });
     asset(splats.to_vec(), error)
+}
+
+/// The same corner with the other faces as partners, which unite; a fourth splat, a bowl over the
+/// corner, keeps what two of them leave together.
+pub fn partnered() -> Asset {
+    let corner = corner();
+    let error = corner.max_error;
+    let faces: Vec<Splat> =
+        corner.splats.iter().map(|face| Splat { clips: Vec::new(), ..face.clone() }).collect();
+    let partner = |n: usize, cut| Partner::new(n as u32, &faces[n], cut, error);
+    let mut splats = faces.clone();
+    for (n, splat) in splats.iter_mut().enumerate() {
+        let others = [(n + 1) % 3, (n + 2) % 3];
+        splat.partners = others.map(|other| vec![partner(other, Cut::Seen)]).to_vec();
+    }
+    let bowl = splat(DVec3::splat(0.5), axes(DVec3::ONE), DVec2::new(0.5, 0.4), DVec2::new(0.4, -0.3));
+    let groups = vec![vec![partner(0, Cut::Unseen), partner(1, Cut::Unseen)], vec![partner(2, Cut::Seen)]];
+    splats.push(Splat { partners: groups, clips: vec![ClipCurve::chord(4.2, 4.9)], ..bowl });
+    asset(splats, error)
 }
 
 /// One bowl with these shapes of clip: chord, parabola, corner, and all at once.

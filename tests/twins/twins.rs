@@ -69,6 +69,7 @@ fn all_scenes() -> Vec<(&'static str, Asset)> {
         ("chord", scenes::clipped(0.0, false)),
         ("parabola", scenes::clipped(0.5, false)),
         ("control polygon", scenes::clipped(1.0, false)),
+        ("partners", scenes::partnered()),
         ("three clips", scenes::clipped(0.4, true)),
         ("needles", scenes::needles()),
         ("all kinds", scenes::all_kinds()),

@@ -52,6 +52,7 @@ fn disc(center: DVec3, radius: f64) -> Splat {
         radii: DVec2::splat(radius),
         curvature: DVec2::ZERO,
         clips: Vec::new(),
+        partners: Vec::new(),
         color: [255; 3],
     }
 }

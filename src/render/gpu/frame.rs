@@ -163,6 +163,9 @@ fn splats(
     pipeline: impl Fn(&SplatPipelines) -> &wgpu::RenderPipeline,
 ) {
     pass.set_vertex_buffer(0, scene.splats.slice(..));
+    if let Some(partners) = &scene.partners {
+        pass.set_vertex_buffer(1, partners.slice(..));
+    }
     for class in &scene.classes {
         pass.set_pipeline(pipeline(&class.pipelines));
         pass.set_bind_group(0, &class.group, &[]);

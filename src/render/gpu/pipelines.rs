@@ -19,6 +19,8 @@ pub struct Layouts {
     pub plain: wgpu::BindGroupLayout,
     /// The camera and the conics.
     pub clipped: wgpu::BindGroupLayout,
+    /// The camera, the conics and the clip partners.
+    pub partnered: wgpu::BindGroupLayout,
     /// The visible surfaces, for the attribute pass.
     pub surfaces: wgpu::BindGroupLayout,
     /// All that the shading pass reads.
@@ -36,14 +38,26 @@ impl Layouts {
         };
         let float = texture(wgpu::TextureSampleType::Float { filterable: false });
         let eye = buffer(wgpu::BufferBindingType::Uniform);
-        let conics = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+        let storage = buffer(wgpu::BufferBindingType::Storage { read_only: true });
         let word = texture(wgpu::TextureSampleType::Uint);
         let shaded = [float, word, float, float];
         Self {
             plain: layout(gpu, &[eye]),
-            clipped: layout(gpu, &[eye, conics]),
+            clipped: layout(gpu, &[eye, storage]),
+            partnered: layout(gpu, &[eye, storage, storage]),
             surfaces: layout(gpu, &[float]),
             shading: layout(gpu, if colored { &shaded } else { &shaded[..3] }),
+        }
+    }
+}
+
+impl Layouts {
+    /// What the passes over splats with these needs are bound to.
+    pub fn of(&self, needs: Needs) -> &wgpu::BindGroupLayout {
+        match (needs.clipped, needs.partnered) {
+            (_, true) => &self.partnered,
+            (true, false) => &self.clipped,
+            (false, false) => &self.plain,
         }
     }
 }
@@ -75,7 +89,7 @@ pub struct SplatPipelines {
 impl SplatPipelines {
     /// Compiles the passes for what a class needs.
     pub fn new(gpu: &Gpu, layouts: &Layouts, needs: Needs) -> Self {
-        let layout = if needs.clipped { &layouts.clipped } else { &layouts.plain };
+        let layout = layouts.of(needs);
         let module = module(gpu, "splats", source::splats(needs));
         let plain = |format| Some(wgpu::ColorTargetState::from(format));
         let add = wgpu::BlendComponent {
@@ -87,7 +101,8 @@ impl SplatPipelines {
         let sum = Some(wgpu::ColorTargetState { blend, ..wgpu::ColorTargetState::from(gpu.sums) });
         let sums = if needs.colored { vec![sum.clone(), sum] } else { vec![sum] };
         let pass = |layouts: &[&wgpu::BindGroupLayout], fragment, targets: &[_], depth| {
-            Pass { layouts, module: &module, entries: ["vertex", fragment], targets, depth }.pipeline(gpu)
+            let vertex = Vertex::Splats { partnered: needs.partnered };
+            Pass { layouts, module: &module, vertex, fragment, targets, depth }.pipeline(gpu)
         };
         let read = [layout, &layouts.surfaces];
         Self {
@@ -103,7 +118,8 @@ pub fn shading(gpu: &Gpu, layouts: &Layouts, colored: bool) -> wgpu::RenderPipel
     Pass {
         layouts: &[&layouts.plain, &layouts.shading],
         module: &module(gpu, "shading", source::shading(colored)),
-        entries: ["whole", "shade"],
+        vertex: Vertex::Whole,
+        fragment: "shade",
         targets: &[Some(PICTURE.into())],
         depth: false,
     }
@@ -117,12 +133,22 @@ fn module(gpu: &Gpu, label: &str, source: String) -> wgpu::ShaderModule {
     })
 }
 
+/// What a pass reads vertices from.
+#[derive(Clone, Copy)]
+enum Vertex {
+    /// Splat records and, where some have partners, where each one's are.
+    Splats { partnered: bool },
+    /// Nothing: one triangle holds the picture.
+    Whole,
+}
+
 /// What the pipelines differ in.
 struct Pass<'a> {
     layouts: &'a [&'a wgpu::BindGroupLayout],
     module: &'a wgpu::ShaderModule,
-    /// Vertex and fragment entry points; `vertex` reads splat records.
-    entries: [&'static str; 2],
+    vertex: Vertex,
+    /// The fragment entry point.
+    fragment: &'static str,
     targets: &'a [Option<wgpu::ColorTargetState>],
     /// Whether the nearest fragment wins.
     depth: bool,
@@ -134,26 +160,36 @@ impl Pass<'_> {
             0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Float32x4, 5 => Float32x3,
             6 => Uint32x3
         ];
-        let records = [Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<SplatRecord>() as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &attributes,
-        })];
+        let instances = |stride: usize, attributes| {
+            Some(wgpu::VertexBufferLayout {
+                array_stride: stride as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes,
+            })
+        };
+        let partners = wgpu::vertex_attr_array![7 => Uint32x2];
+        let records = [
+            instances(size_of::<SplatRecord>(), &attributes[..]),
+            instances(size_of::<[u32; 2]>(), &partners[..]),
+        ];
+        let (vertex, buffers) = match self.vertex {
+            Vertex::Splats { partnered } => ("vertex", &records[..1 + usize::from(partnered)]),
+            Vertex::Whole => ("whole", &[][..]),
+        };
         let bind_group_layouts: Vec<_> = self.layouts.iter().map(|&layout| Some(layout)).collect();
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &bind_group_layouts,
             ..Default::default()
         });
-        let [vertex, fragment] = self.entries;
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(fragment),
+            label: Some(self.fragment),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module: self.module,
                 entry_point: Some(vertex),
                 compilation_options: Default::default(),
-                buffers: if vertex == "vertex" { &records } else { &[] },
+                buffers,
             },
             primitive: wgpu::PrimitiveState {
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
@@ -169,7 +205,7 @@ impl Pass<'_> {
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: self.module,
-                entry_point: Some(fragment),
+                entry_point: Some(self.fragment),
                 compilation_options: Default::default(),
                 targets: self.targets,
             }),

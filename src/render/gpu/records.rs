@@ -7,6 +7,7 @@ use crate::model::asset::Asset;
 use crate::model::splat::{Kind, Splat};
 use crate::render::constants;
 use crate::render::eye::Eye;
+use crate::render::partner::locals;
 use crate::render::settings::Settings;
 use crate::render::splat::{linear_color, unit_conic};
 
@@ -32,6 +33,18 @@ pub struct ConicRecord {
     p3: [f32; 2],
     rho: f32,
     pad: f32,
+}
+
+/// `Partner` of `partner.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct PartnerRecord {
+    /// Rows of the map to the partner's coordinates.
+    rows: [[f32; 4]; 3],
+    curvature: [f32; 2],
+    outset: f32,
+    /// 1 for the last of its group, else 0.
+    last: f32,
 }
 
 /// `Eye` of `eye.wgsl`.
@@ -64,6 +77,7 @@ pub struct EyeRecord {
 
 const _: () = assert!(size_of::<SplatRecord>() == 88);
 const _: () = assert!(size_of::<ConicRecord>() == 32);
+const _: () = assert!(size_of::<PartnerRecord>() == 64);
 const _: () = assert!(size_of::<EyeRecord>() == 160);
 
 /// A 64-bit point as the sum of two 32-bit ones.
@@ -74,7 +88,7 @@ fn split(point: DVec3) -> [[f32; 3]; 2] {
 
 /// The class of a splat, see [`constants::class`].
 pub fn class(splat: &Splat) -> usize {
-    constants::class(splat.kind() == Kind::Quadric, !splat.clips.is_empty())
+    constants::class(splat.kind() == Kind::Quadric, splat.is_clipped())
 }
 
 /// The record of one splat; its conics are appended to the list.
@@ -97,6 +111,24 @@ pub fn splat(splat: &Splat, index: usize, has_colors: bool, conics: &mut Vec<Con
         color: color.to_array(),
         words: [index as u32 | (class(splat) as u32) << INDEX_BITS, first, splat.clips.len() as u32],
     }
+}
+
+/// The first and the number of a splat's partners, which are appended to the list group by group.
+pub fn partners(splat: &Splat, partners: &mut Vec<PartnerRecord>) -> [u32; 2] {
+    let first = partners.len();
+    for group in splat.partners.iter().map(|group| locals(group, splat)) {
+        partners.extend(group.iter().zip(1..).map(|(partner, n)| {
+            let [i, j, k] = partner.axes.transpose().to_cols_array_2d().map(DVec3::from);
+            let row = |row: DVec3, from: f64| row.extend(from).as_vec4().to_array();
+            PartnerRecord {
+                rows: [row(i, partner.origin.x), row(j, partner.origin.y), row(k, partner.origin.z)],
+                curvature: partner.curvature.as_vec2().to_array(),
+                outset: partner.outset as f32,
+                last: if n == group.len() { 1.0 } else { 0.0 },
+            }
+        }));
+    }
+    [first as u32, (partners.len() - first) as u32]
 }
 
 impl EyeRecord {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Gpu;
 use super::pipelines::{self, Layouts, SplatPipelines};
-use super::records::{self, ConicRecord, EyeRecord, SplatRecord};
+use super::records::{self, ConicRecord, EyeRecord, PartnerRecord, SplatRecord};
 use super::source::{INDEX_BITS, Needs};
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
@@ -26,6 +26,8 @@ pub struct Scene {
     pub colored: bool,
     /// The splats, class by class.
     pub splats: wgpu::Buffer,
+    /// Where each one's clip partners are, if any has some.
+    pub partners: Option<wgpu::Buffer>,
     /// The camera of the frame being drawn.
     pub eye: wgpu::Buffer,
     /// The classes that are not empty.
@@ -45,7 +47,7 @@ pub struct Scene {
 pub struct Class {
     /// Their places in the buffer.
     pub instances: Range<u32>,
-    /// The camera, and the conics if any.
+    /// The camera, and the conics and partners if any.
     pub group: wgpu::BindGroup,
     /// The passes over them.
     pub pipelines: SplatPipelines,
@@ -54,14 +56,27 @@ pub struct Class {
 impl Scene {
     /// Moves an asset to a device.
     pub fn new(gpu: &Gpu, asset: &Asset) -> Result<Self> {
-        let Sorted { records, conics, ranges } = Sorted::new(asset)?;
+        let Sorted { records, conics, partners, partner_ranges, ranges } = Sorted::new(asset)?;
         let limits = gpu.device.limits();
         let bytes = size_of_val(records.as_slice()) as u64;
         gpu.within("the size of the splats in bytes", bytes, limits.max_buffer_size)?;
+        let stored = limits.max_storage_buffer_binding_size;
         let bytes = size_of_val(conics.as_slice()) as u64;
-        gpu.within("the size of the clip curves in bytes", bytes, limits.max_storage_buffer_binding_size)?;
+        gpu.within("the size of the clip curves in bytes", bytes, stored)?;
+        let bytes = size_of_val(partners.as_slice()) as u64;
+        gpu.within("the size of the clip partners in bytes", bytes, stored)?;
+        let (clipped, partnered) = (!conics.is_empty(), !partners.is_empty());
         let splats = buffer(gpu, "splats", bytemuck::cast_slice(&records), wgpu::BufferUsages::VERTEX);
         let conics = buffer(gpu, "conics", bytemuck::cast_slice(&conics), wgpu::BufferUsages::STORAGE);
+        let stored = buffer(gpu, "partners", bytemuck::cast_slice(&partners), wgpu::BufferUsages::STORAGE);
+        let partners = partnered.then(|| {
+            buffer(
+                gpu,
+                "ranges of partners",
+                bytemuck::cast_slice(&partner_ranges),
+                wgpu::BufferUsages::VERTEX,
+            )
+        });
         let eye = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("eye"),
             size: size_of::<EyeRecord>() as u64,
@@ -72,14 +87,20 @@ impl Scene {
         let classes = ranges.into_iter().enumerate().filter(|(_, range)| !range.is_empty());
         let classes = classes
             .map(|(class, instances)| {
-                let needs =
-                    Needs { quadric: class & 2 != 0, clipped: class & 1 != 0, colored: asset.has_colors };
-                let (eye, conics) = (eye.as_entire_binding(), conics.as_entire_binding());
-                let group = if needs.clipped {
-                    group(gpu, &layouts.clipped, &[eye, conics])
-                } else {
-                    group(gpu, &layouts.plain, &[eye])
+                let cut = class & 1 != 0;
+                let needs = Needs {
+                    quadric: class & 2 != 0,
+                    clipped: cut && clipped,
+                    partnered: cut && partnered,
+                    colored: asset.has_colors,
                 };
+                let bound = match (needs.clipped, needs.partnered) {
+                    (_, true) => vec![&eye, &conics, &stored],
+                    (true, false) => vec![&eye, &conics],
+                    (false, false) => vec![&eye],
+                };
+                let bound: Vec<_> = bound.into_iter().map(wgpu::Buffer::as_entire_binding).collect();
+                let group = group(gpu, layouts.of(needs), &bound);
                 Class { instances, group, pipelines: SplatPipelines::new(gpu, &layouts, needs) }
             })
             .collect();
@@ -91,6 +112,7 @@ impl Scene {
             band: constants::band(asset),
             colored: asset.has_colors,
             splats,
+            partners,
             eye_group,
             eye,
             classes,
@@ -105,6 +127,9 @@ impl Scene {
 struct Sorted {
     records: Vec<SplatRecord>,
     conics: Vec<ConicRecord>,
+    partners: Vec<PartnerRecord>,
+    /// For each record, the first of its partners and their number.
+    partner_ranges: Vec<[u32; 2]>,
     ranges: [Range<u32>; CLASSES],
 }
 
@@ -118,13 +143,17 @@ impl Sorted {
         }
         let mut ranges: [Range<u32>; CLASSES] = Default::default();
         let (mut records, mut conics) = (Vec::with_capacity(asset.splats.len()), Vec::new());
+        let (mut partners, mut partner_ranges) = (Vec::new(), Vec::with_capacity(asset.splats.len()));
         for (class, range) in ranges.iter_mut().enumerate() {
             let start = records.len() as u32;
-            let members = asset.splats.iter().enumerate().filter(|(_, splat)| records::class(splat) == class);
-            records.extend(members.map(|(n, splat)| records::splat(splat, n, asset.has_colors, &mut conics)));
+            let all = asset.splats.iter().enumerate();
+            for (n, splat) in all.filter(|(_, splat)| records::class(splat) == class) {
+                records.push(records::splat(splat, n, asset.has_colors, &mut conics));
+                partner_ranges.push(records::partners(splat, &mut partners));
+            }
             *range = start..records.len() as u32;
         }
-        Ok(Self { records, conics, ranges })
+        Ok(Self { records, conics, partners, partner_ranges, ranges })
     }
 }
 
@@ -132,7 +161,7 @@ impl Sorted {
 fn buffer(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: bytes.len().max(size_of::<ConicRecord>()) as u64,
+        size: bytes.len().max(size_of::<PartnerRecord>()) as u64,
         usage: usage | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });

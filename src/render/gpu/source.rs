@@ -16,13 +16,20 @@ pub struct Needs {
     pub quadric: bool,
     /// Some splat has clip curves.
     pub clipped: bool,
+    /// Some splat has clip partners.
+    pub partnered: bool,
     /// Colours are blended.
     pub colored: bool,
 }
 
 impl Needs {
     fn names(self) -> Vec<&'static str> {
-        let all = [(self.quadric, "QUADRIC"), (self.clipped, "CLIPPED"), (self.colored, "COLORED")];
+        let all = [
+            (self.quadric, "QUADRIC"),
+            (self.clipped, "CLIPPED"),
+            (self.partnered, "PARTNERED"),
+            (self.colored, "COLORED"),
+        ];
         all.into_iter().filter_map(|(needed, name)| needed.then_some(name)).collect()
     }
 }
@@ -39,6 +46,9 @@ pub fn splats(needs: Needs) -> String {
     ];
     if needs.clipped {
         parts.push(include_str!("../clip.wgsl"));
+    }
+    if needs.partnered {
+        parts.push(include_str!("../partner.wgsl"));
     }
     assemble(&parts, &needs.names())
 }
@@ -98,16 +108,16 @@ mod tests {
 
     #[test]
     fn nothing_unneeded_is_compiled() {
-        let plain = splats(Needs { quadric: false, clipped: false, colored: false });
-        for word in ["conic:", "discriminant", "color:", "//#", "var<storage"] {
+        let plain = splats(Needs { quadric: false, clipped: false, partnered: false, colored: false });
+        for word in ["conic:", "discriminant", "color:", "//#", "var<storage", "partner"] {
             let place = plain.find(word).map(|at| &plain[at..plain.len().min(at + 60)]);
             // The record's layout is the same for all, so its colour stays.
             let record = word == "color:"
                 && place.is_some_and(|text| text.starts_with("color: vec3<f32>,\n    // index"));
             assert!(place.is_none() || record, "{place:?}");
         }
-        let full = splats(Needs { quadric: true, clipped: true, colored: true });
-        for word in ["conic: Conic", "discriminant", "sums.color", "var<storage"] {
+        let full = splats(Needs { quadric: true, clipped: true, partnered: true, colored: true });
+        for word in ["conic: Conic", "discriminant", "sums.color", "var<storage", "partners_cut"] {
             assert!(full.contains(word), "{word}");
         }
     }

@@ -1,0 +1,24 @@
+//! Splats that are near enough to meet.
+
+use crate::model::splat::Splat;
+
+/// Pairs of splats, each ascending and all in order, whose centres are nearer than their radii
+/// reach together (equation 1 of the paper, which prints the sign the other way round).
+pub(super) fn neighbours(splats: &[Splat]) -> Vec<[u32; 2]> {
+    let reach: Vec<f64> = splats.iter().map(Splat::bounding_radius).collect();
+    let low = |n: u32| splats[n as usize].center.x - reach[n as usize];
+    let mut order: Vec<u32> = (0..splats.len() as u32).collect();
+    order.sort_by(|&a, &b| low(a).total_cmp(&low(b)).then(a.cmp(&b)));
+    let mut pairs = Vec::new();
+    for (at, &a) in order.iter().enumerate() {
+        let (splat, high) = (&splats[a as usize], splats[a as usize].center.x + reach[a as usize]);
+        for &b in order[at + 1..].iter().take_while(|&&b| low(b) < high) {
+            let together = reach[a as usize] + reach[b as usize];
+            if splat.center.distance_squared(splats[b as usize].center) < together * together {
+                pairs.push([a.min(b), a.max(b)]);
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs
+}
