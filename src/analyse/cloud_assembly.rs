@@ -51,7 +51,11 @@ impl<'a> Assembly<'a> {
         let border_next = self.border_next();
         let lengths = rows().map(|row| self.owned.row(row).len() as u32).chain(on_lines.iter().map(|_| 0));
         Surface {
-            points: rows().into_par_iter().map(|row| self.middle(row)).chain(of_lines(|p| p.position)).collect(),
+            points: rows()
+                .into_par_iter()
+                .map(|row| self.middle(row))
+                .chain(of_lines(|p| p.position))
+                .collect(),
             places: rows().chain(on_lines.iter().map(|point| self.count() + point.node)).collect(),
             normals: self.kept.par_iter().map(|&n| self.normal(n)).chain(of_lines(|p| p.normal)).collect(),
             colors: self.mean_colors(),

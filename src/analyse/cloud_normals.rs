@@ -1,10 +1,10 @@
 //! Normals of a cloud: the file's where they are sound, else those of the local planes.
 
 use glam::{DMat3, DVec3, Vec3};
+use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::distinct::Distinct;
-use super::eigen::eigen;
 use super::nearest::{Nearest, listed};
 use super::orient::{agreement, orient};
 use crate::error::{Error, Result};
@@ -167,12 +167,18 @@ pub fn plane(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32>
     let Some(spread) = spread(positions, index, others) else {
         return Plane { normal: Vec3::Z, flat: false };
     };
-    let [(least, normal), (middle, _), _] = eigen(spread);
-    Plane { normal: upward(normal.as_vec3()), flat: least < FLAT * middle }
+    let covariance = Matrix3::from_column_slice(&spread.to_cols_array());
+    let eigen = SymmetricEigen::new(covariance);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let least = eigen.eigenvectors.column(order[0]);
+    let normal = DVec3::new(least[0], least[1], least[2]).normalize_or(DVec3::Z).as_vec3();
+    let flat = eigen.eigenvalues[order[0]] < FLAT * eigen.eigenvalues[order[1]];
+    Plane { normal: upward(normal), flat }
 }
 
 /// Of a normal and its opposite, the one whose greatest coordinate is positive: the solver's
-/// own choice of sign says nothing.
+/// own choice of sign may differ between machines.
 fn upward(normal: Vec3) -> Vec3 {
     let a = normal.abs();
     let greatest = if a.z >= a.x && a.z >= a.y {

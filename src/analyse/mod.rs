@@ -5,8 +5,8 @@
 mod blocks;
 pub mod canonical;
 pub mod chains;
-pub mod cloud_creases;
 mod cloud_assembly;
+pub mod cloud_creases;
 pub mod cloud_graph;
 pub mod cloud_normals;
 pub mod cloud_surface;
@@ -14,7 +14,6 @@ pub mod creases;
 mod curved;
 pub mod distinct;
 pub mod edges;
-mod eigen;
 pub mod given_lines;
 pub mod line_cut;
 pub mod line_network;

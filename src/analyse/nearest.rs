@@ -50,7 +50,8 @@ impl Search {
     pub fn nearest(&self) -> Nearest {
         let all = 0..self.points.len() as u32;
         let blocks = Blocks::new(&self.points, self);
-        blocks.map_or_else(|| all.into_par_iter().map(|n| self.others(n)).collect(), |blocks| blocks.nearest())
+        blocks
+            .map_or_else(|| all.into_par_iter().map(|n| self.others(n)).collect(), |blocks| blocks.nearest())
     }
 
     /// The nearest others of one point.
@@ -84,11 +85,7 @@ impl Search {
 }
 
 /// The others among those found, nearest first, without the last ones if they are tied.
-pub(super) fn chosen(
-    positions: &[[f32; 3]],
-    index: u32,
-    found: impl Iterator<Item = u32>,
-) -> [u32; NEAREST] {
+pub(super) fn chosen(positions: &[[f32; 3]], index: u32, found: impl Iterator<Item = u32>) -> [u32; NEAREST] {
     let at = |n: u32| Vec3::from(positions[n as usize]).as_dvec3();
     let here: DVec3 = at(index);
     let mut others = [(f64::INFINITY, NONE); ASKED];

@@ -78,8 +78,7 @@ impl Rows {
             }
             (lengths, items)
         };
-        let (lengths, items): (Vec<_>, Vec<_>) =
-            (0..rows.div_ceil(BLOCK)).into_par_iter().map(block).unzip();
+        let (lengths, items): (Vec<_>, Vec<_>) = (0..rows.div_ceil(BLOCK)).into_par_iter().map(block).unzip();
         Self { starts: ends(&lengths.concat()), items: items.concat() }
     }
 

@@ -52,7 +52,8 @@ impl Need {
         let seeds = grower.surface.pieces[piece as usize];
         let least = self.domain(grower, &seeds, region)?;
         let settled = |domain: Domain, region: &mut Region| {
-            settle(grower, domain, &seeds, piece, region).filter(|found| found.covers(self.pieces.iter().copied()))
+            settle(grower, domain, &seeds, piece, region)
+                .filter(|found| found.covers(self.pieces.iter().copied()))
         };
         let found = settled(least.clone(), region)?;
         // More than is needed leaves less for others to cover alone.
