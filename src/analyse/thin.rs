@@ -23,6 +23,10 @@ pub struct Reach {
 /// Normals of points stood for agree with that of the point by at least this cosine (25°).
 const AGREE: f32 = 0.906;
 
+/// A point whose normal turns from that of one joined to it by more than this (cosine of 15°) lies
+/// where the surface is creased, or where it is as fine as the points.
+const CREASED: f32 = 0.966;
+
 /// Points whose claims are made one after another. Blocks are of the same size whatever the
 /// threads, so that the claims are the same too.
 const BLOCK: usize = 1 << 15;
@@ -41,8 +45,7 @@ pub struct Sheet<'a> {
     pub joined: &'a [Joined],
     /// Which belong to no surface.
     pub outlier: &'a [bool],
-    /// Which are joined to a feature line. They stand for themselves alone: the sheet ends there, and
-    /// splats are cut as these points say.
+    /// Which are joined to a feature line.
     pub on_line: &'a [bool],
 }
 
@@ -75,6 +78,14 @@ fn claims(sheet: &Sheet<'_>, reach: Reach) -> Vec<u32> {
     claimed
 }
 
+/// Whether a point stands for itself alone: beside lines, where sheets end and splats are cut, and
+/// beside creases that no line was found for, where their growth has to end.
+fn stands_alone(sheet: &Sheet<'_>, point: usize) -> bool {
+    let turns = |other: u32| sheet.normals[other as usize].dot(sheet.normals[point]) < CREASED;
+    let mut others = sheet.joined[point].sectors.iter().copied().filter(|&other| other != NONE);
+    sheet.on_line[point] || others.any(turns)
+}
+
 /// Claims what a point reaches, in a block of points that starts at `first`.
 fn claim(
     sheet: &Sheet<'_>,
@@ -85,7 +96,7 @@ fn claim(
 ) {
     let point = first + at;
     claimed[at] = point as u32;
-    if sheet.on_line[point] {
+    if stands_alone(sheet, point) {
         return;
     }
     let (center, normal) = (sheet.positions[point], sheet.normals[point]);
@@ -95,7 +106,7 @@ fn claim(
             && way.dot(normal.as_dvec3()).abs() <= reach.offset
             && sheet.normals[other].dot(normal) >= AGREE
             && !sheet.outlier[other]
-            && !sheet.on_line[other]
+            && !stands_alone(sheet, other)
     };
     reached.clear();
     reached.push(point as u32);
