@@ -43,46 +43,134 @@ pub fn creases(welded: &Welded, edges: &Edges, degrees: f64) -> Vec<bool> {
     marked
 }
 
-/// Marks weak edges that carry a marked one straight on beyond its end.
+/// Marks weak edges that carry a marked one straight on beyond its end, or leave a corner of two.
 fn carry_on(welded: &Welded, edges: &Edges, weak: &[bool], marked: &mut [bool]) {
-    let mut at_vertex: Vec<(u32, u32)> = edges
-        .edges
-        .iter()
-        .enumerate()
-        .filter(|&(index, _)| weak[index] || marked[index])
-        .flat_map(|(index, edge)| edge.ends.map(|end| (end, index as u32)))
-        .collect();
-    at_vertex.sort_unstable();
-    let around = |vertex: u32| {
-        let from = at_vertex.partition_point(|entry| entry.0 < vertex);
-        at_vertex[from..].iter().take_while(move |entry| entry.0 == vertex).map(|entry| entry.1)
-    };
-    let away = |index: u32, vertex: u32| -> DVec3 {
-        let [a, b] = edges.edges[index as usize].ends;
-        let other = if a == vertex { b } else { a };
-        (welded.positions[other as usize] - welded.positions[vertex as usize]).as_dvec3().normalize_or_zero()
-    };
-    let mut open: Vec<(u32, u32)> = edges
-        .edges
-        .iter()
-        .enumerate()
-        .filter(|&(index, _)| marked[index])
-        .flat_map(|(index, edge)| edge.ends.map(|end| (index as u32, end)))
-        .collect();
+    let ridges = Ridges::new(welded, edges, |index| weak[index] || marked[index]);
+    let ends = edges.edges.iter().zip(0_u32..).filter(|&(_, index)| marked[index as usize]);
+    let mut open: Vec<(u32, u32)> =
+        ends.flat_map(|(edge, index)| edge.ends.map(|end| (index, end))).collect();
+    for (index, vertex) in ridges.thirds(marked) {
+        marked[index as usize] = true;
+        open.push((index, ridges.beyond(index, vertex)));
+    }
     while let Some((edge, vertex)) = open.pop() {
-        if around(vertex).filter(|&index| marked[index as usize]).count() > 1 {
+        if ridges.around(vertex).filter(|&index| marked[index as usize]).count() > 1 {
             continue;
         }
-        let back = away(edge, vertex);
-        let onward = around(vertex)
-            .filter(|&index| index != edge)
-            .map(|index| (away(index, vertex).dot(-back), index))
-            .filter(|&(straight, _)| straight > STRAIGHT)
-            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-        if let Some((_, index)) = onward {
+        if let Some(index) = ridges.onward(edge, vertex) {
             marked[index as usize] = true;
-            let [a, b] = edges.edges[index as usize].ends;
-            open.push((index, if a == vertex { b } else { a }));
+            open.push((index, ridges.beyond(index, vertex)));
         }
+    }
+}
+
+/// Edges that are or may become feature edges, by the vertices they meet at.
+struct Ridges<'a> {
+    welded: &'a Welded,
+    edges: &'a Edges,
+    /// Vertex and edge, sorted.
+    at_vertex: Vec<(u32, u32)>,
+}
+
+impl<'a> Ridges<'a> {
+    fn new(welded: &'a Welded, edges: &'a Edges, is_ridge: impl Fn(usize) -> bool) -> Self {
+        let ridges = (0..edges.edges.len()).filter(|&index| is_ridge(index));
+        let mut at_vertex: Vec<(u32, u32)> =
+            ridges.flat_map(|index| edges.edges[index].ends.map(|end| (end, index as u32))).collect();
+        at_vertex.sort_unstable();
+        Self { welded, edges, at_vertex }
+    }
+
+    /// The ridges that meet at a vertex.
+    fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
+        let from = self.at_vertex.partition_point(|entry| entry.0 < vertex);
+        self.at_vertex[from..].iter().take_while(move |entry| entry.0 == vertex).map(|entry| entry.1)
+    }
+
+    /// The other end of a ridge.
+    fn beyond(&self, index: u32, vertex: u32) -> u32 {
+        let [a, b] = self.edges.edges[index as usize].ends;
+        if a == vertex { b } else { a }
+    }
+
+    /// The direction in which a ridge leaves a vertex.
+    fn away(&self, index: u32, vertex: u32) -> DVec3 {
+        let [from, to] = self.welded.places([vertex, self.beyond(index, vertex)]);
+        (to - from).normalize_or_zero()
+    }
+
+    /// The ridge that goes on beyond the end of another, as straight as there is.
+    fn onward(&self, edge: u32, vertex: u32) -> Option<u32> {
+        let back = self.away(edge, vertex);
+        let others = self.around(vertex).filter(|&index| index != edge);
+        let straight = others.map(|index| (self.away(index, vertex).dot(-back), index));
+        let straight = straight.filter(|&(straight, _)| straight > STRAIGHT);
+        straight.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, index)| index)
+    }
+
+    /// The ridges that leave a corner, where two marked ones meet at an angle, as the only third:
+    /// three faces meet there, and two of them may do so at a lesser angle than they meet the third.
+    fn thirds(&self, marked: &[bool]) -> Vec<(u32, u32)> {
+        let mut vertices: Vec<u32> = self.at_vertex.iter().map(|entry| entry.0).collect();
+        vertices.dedup();
+        let third = |vertex: u32| {
+            let (lines, others): (Vec<u32>, Vec<u32>) =
+                self.around(vertex).partition(|&index| marked[index as usize]);
+            let (&[a, b], &[third]) = (lines.as_slice(), others.as_slice()) else { return None };
+            let corner = self.away(a, vertex).dot(self.away(b, vertex)) >= -STRAIGHT;
+            corner.then_some((third, vertex))
+        };
+        vertices.into_iter().filter_map(third).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Steps from the middle to a side.
+    const HALF: i32 = 4;
+
+    /// Places of a row, and of all rows.
+    const ROW: i32 = 2 * HALF + 1;
+
+    /// A plane of which the quarter `x > 0 > y` is turned up by `fold` degrees about the line
+    /// `x = 0`, and the wall that stands along `y = 0` for it, which begins at the origin.
+    fn wedge(fold: f32) -> Welded {
+        let slope = fold.to_radians().tan();
+        let height = |x: i32, y: i32| if x > 0 && y < 0 { slope * x as f32 } else { 0.0 };
+        let steps = || -HALF..=HALF;
+        let plane = steps().flat_map(|y| steps().map(move |x| Vec3::new(x as f32, y as f32, height(x, y))));
+        let top = (1..=HALF).map(|x| Vec3::new(x as f32, 0.0, slope * x as f32));
+        let low = |x: i32, y: i32| ((y + HALF) * ROW + x + HALF) as u32;
+        let high = |x: i32| if x > 0 { (ROW * ROW + x - 1) as u32 } else { low(x, 0) };
+        let cell = |x: i32, y: i32| {
+            let raised = x >= 0 && y == -1;
+            let upper = |x: i32| if raised { high(x) } else { low(x, y + 1) };
+            let (a, b, c, d) = (low(x, y), low(x + 1, y), upper(x), upper(x + 1));
+            [[a, b, c], [b, d, c]]
+        };
+        let cells = (-HALF..HALF).flat_map(|y| (-HALF..HALF).flat_map(move |x| cell(x, y)));
+        let wall = (0..HALF)
+            .flat_map(|x| [[low(x, 0), high(x), high(x + 1)], [low(x, 0), high(x + 1), low(x + 1, 0)]]);
+        let triangles = cells.chain(wall.skip(1)).collect();
+        Welded { positions: plane.chain(top).collect(), triangles, ..Welded::default() }
+    }
+
+    /// Marked edges along the fold, of four.
+    fn along_the_fold(fold: f32) -> usize {
+        let welded = wedge(fold);
+        let edges = Edges::of(&welded.triangles);
+        let marked = creases(&welded, &edges, 40.0);
+        let on_fold = |place: DVec3| place.x == 0.0 && place.y <= 0.0;
+        let folds = edges.edges.iter().map(|edge| welded.places(edge.ends).into_iter().all(on_fold));
+        folds.zip(marked).filter(|(fold, mark)| *fold && *mark).count()
+    }
+
+    #[test]
+    fn a_weak_crease_that_leaves_a_corner_is_followed() {
+        assert_eq!(along_the_fold(20.0), 4);
+        assert_eq!(along_the_fold(10.0), 0, "too weak to go on");
     }
 }
