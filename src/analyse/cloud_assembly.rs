@@ -66,6 +66,7 @@ impl<'a> Assembly<'a> {
             margin: rows().map(|row| self.margin(row)).chain(on_lines.iter().map(|_| 0.0)).collect(),
             border_prev: inverse(&border_next),
             border_next,
+            carried: Vec::new(),
         }
     }
 

@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 use super::cloud_graph::Sites;
 use super::line_network::Network;
-use super::segment_grid::{SegmentGrid, nearest_on};
+use super::segment_grid::SegmentGrid;
 use super::surface::{NONE, Rows};
+use crate::model::polyline::nearest_on;
 
 /// Points within this many spacings of a line show its sheets.
 const REACH: f64 = 3.0;

@@ -6,6 +6,7 @@ use super::chains;
 use super::creases::creases;
 use super::edges::Edges;
 use super::given_lines::{self, Matched, Meant};
+use super::line_ends::carried;
 use super::refine::refine;
 use super::split::split;
 use super::surface::Surface;
@@ -57,8 +58,13 @@ pub struct Making<'a> {
 /// The surface of a mesh, cut along feature edges.
 #[must_use]
 pub fn mesh_surface(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Surface, Found) {
-    let (fine, marked, found) = marked(mesh, features, making);
-    (split(&fine, &marked), found)
+    let (fine, mut marked, found) = marked(mesh, features, making);
+    let edges = Edges::of(&fine.triangles);
+    let carried = carried(&fine, &edges, &marked, making.worth.max_error);
+    carried.iter().for_each(|&edge| marked[edge as usize] = true);
+    let mut surface = split(&fine, &marked);
+    surface.carried_on(carried.iter().map(|&edge| edges.edges[edge as usize].ends));
+    (surface, found)
 }
 
 /// A mesh, refined; which of its edges are feature edges; and what was found.

@@ -16,6 +16,7 @@ pub mod distinct;
 pub mod edges;
 pub mod given_lines;
 pub mod line_cut;
+mod line_ends;
 pub mod line_network;
 pub mod line_sheets;
 pub mod marks;

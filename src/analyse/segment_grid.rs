@@ -2,6 +2,8 @@
 
 use glam::{DVec3, IVec3};
 
+use crate::model::polyline::nearest_on;
+
 /// Segments sorted into the cells of a uniform grid.
 #[derive(Clone, Debug)]
 pub struct SegmentGrid {
@@ -91,14 +93,6 @@ impl SegmentGrid {
 
 fn cell_of(point: DVec3, cell: f64) -> IVec3 {
     (point / cell).floor().as_ivec3()
-}
-
-/// The point of the segment `a b` nearest to `p`.
-#[must_use]
-pub fn nearest_on(a: DVec3, b: DVec3, p: DVec3) -> DVec3 {
-    let along = b - a;
-    let length = along.length_squared();
-    if length > 0.0 { a + along * ((p - a).dot(along) / length).clamp(0.0, 1.0) } else { a }
 }
 
 #[cfg(test)]

@@ -74,6 +74,7 @@ fn assemble(welded: &Welded, point_of: &[u32], vertex_of: &[u32], border_next: V
         margin: vec![0.0; vertex_of.len()],
         border_prev: inverse(&border_next),
         border_next,
+        carried: Vec::new(),
     }
 }
 

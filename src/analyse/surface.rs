@@ -155,6 +155,9 @@ pub struct Surface {
     pub margin: Vec<f32>,
     /// For each point the next one along the border, with the surface on the left; or [`NONE`].
     pub border_next: Vec<u32>,
+    /// For each point, whether the side that starts there only carries a feature line on beyond its
+    /// end. Empty where none is.
+    pub carried: Vec<bool>,
     /// The inverse of `border_next`.
     pub border_prev: Vec<u32>,
 }
@@ -186,6 +189,24 @@ impl Surface {
         }
         let [a, b, c] = self.pieces[piece as usize].map(|corner| self.point(corner));
         0.5 * (b - a).cross(c - a).length()
+    }
+
+    /// Whether the border's side that starts at a point only carries a feature line on.
+    #[must_use]
+    pub fn is_carried(&self, point: u32) -> bool {
+        self.carried.get(point as usize).copied().unwrap_or_default()
+    }
+
+    /// Notes along which edges, each given by its places, lines are only carried on.
+    pub fn carried_on(&mut self, edges: impl Iterator<Item = [u32; 2]>) {
+        let mut edges: Vec<[u32; 2]> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        let place = |point: u32| self.places[point as usize];
+        let side = |(from, &to): (u32, &u32)| {
+            to != NONE
+                && edges.binary_search(&[place(from).min(place(to)), place(from).max(place(to))]).is_ok()
+        };
+        self.carried = (0..).zip(&self.border_next).map(side).collect();
     }
 
     /// The middle of a piece.

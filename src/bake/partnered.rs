@@ -54,9 +54,11 @@ fn places(one: &Candidate, surface: &Surface) -> Vec<DVec3> {
     corners.into_iter().map(|point| surface.point(point)).collect()
 }
 
-/// The points at which a side of a border starts, and where it goes on.
+/// The points at which a side of a border starts, and where it goes on; not where a line is only
+/// carried on.
 fn borders(surface: &Surface) -> Vec<[u32; 2]> {
-    let sides = (0..).zip(&surface.border_next).filter(|&(_, &next)| next != NONE);
+    let sides = (0..).zip(&surface.border_next);
+    let sides = sides.filter(|&(from, &next)| next != NONE && !surface.is_carried(from));
     sides.map(|(from, &next)| [from, next]).collect()
 }
 

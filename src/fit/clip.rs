@@ -20,6 +20,8 @@ pub struct ClipTolerance {
     pub outset: f64,
     /// How far a curve may miss that; no more than `outset`, or it could cut the surface.
     pub miss: f64,
+    /// How far from its line, in space, a curve of a splat that is done may lie.
+    pub edge: f64,
     /// Which curves may be used.
     pub clips: Clips,
 }
@@ -242,26 +244,20 @@ const PLACES: (f64, f64) = (16.0, 256.0);
 ///
 /// A place on a curve that no other curve cuts away is a border of what is kept. It must lie
 /// along an outline, or the splat would go on beyond its surface.
-pub fn bounds_only<'a>(
-    outlines: impl Iterator<Item = (&'a [DVec2], bool)> + Clone,
+pub fn bounds_only(
+    along: impl Fn(DVec2) -> bool,
     conics: &[Conic],
     radii: DVec2,
     tolerance: &ClipTolerance,
 ) -> bool {
-    let reach = tolerance.outset + 2.0 * tolerance.miss;
-    let near = |p: DVec2| {
-        outlines.clone().any(|(line, closed)| {
-            let count = if closed { line.len() } else { line.len().saturating_sub(1) };
-            (0..count).any(|n| squared_distance(line[n], line[(n + 1) % line.len()], p) <= reach * reach)
-        })
-    };
+    let apart = tolerance.outset + 2.0 * tolerance.miss;
     conics.iter().enumerate().all(|(index, conic)| {
         let length = conic.p1.distance(conic.p2) + conic.p2.distance(conic.p3);
         let length = if conic.rho == 0.0 { conic.p1.distance(conic.p3) } else { length };
-        let count = (length / reach).clamp(PLACES.0, PLACES.1) as usize;
+        let count = (length / apart).clamp(PLACES.0, PLACES.1) as usize;
         conic.points(count).filter(|&p| (p / radii).length_squared() < 1.0).all(|p| {
             let cut = conics.iter().enumerate().any(|(other, conic)| other != index && conic.cuts(p));
-            cut || near(p)
+            cut || along(p)
         })
     })
 }
@@ -270,7 +266,8 @@ pub fn bounds_only<'a>(
 mod tests {
     use super::*;
 
-    const TOLERANCE: ClipTolerance = ClipTolerance { outset: 0.002, miss: 0.002, clips: Clips::Curved };
+    const TOLERANCE: ClipTolerance =
+        ClipTolerance { outset: 0.002, miss: 0.002, edge: 0.004, clips: Clips::Curved };
     const STRAIGHT: ClipTolerance = ClipTolerance { clips: Clips::Straight, ..TOLERANCE };
 
     fn check(line: &[DVec2], closed: bool, radii: DVec2) -> Option<usize> {

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::border::{Kind, Piece, height};
 use super::roots;
 use crate::model::clip_curve::Conic;
+use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
 
 /// A piece of the border in splat coordinates.
@@ -57,7 +58,7 @@ impl Segment {
     /// No place of the segment is nearer to the point than this.
     pub(super) fn least(&self, p: DVec3) -> f64 {
         let [a, b] = self.ends;
-        on_line(a, b, p).distance(p) - self.reach
+        nearest_on(a, b, p).distance(p) - self.reach
     }
 
     /// The place nearest to the point, and its distance.
@@ -103,10 +104,3 @@ const KNOTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Parameter step of the differences that find such an extremum: the middle between the rounding
 /// of the slope and the slope's own bend.
 const STEP: f64 = 1e-5;
-
-/// The point of the straight line from `a` to `b` nearest to `p`.
-pub(super) fn on_line(a: DVec3, b: DVec3, p: DVec3) -> DVec3 {
-    let along = b - a;
-    let length = along.length_squared();
-    if length > 0.0 { a + along * ((p - a).dot(along) / length).clamp(0.0, 1.0) } else { a }
-}

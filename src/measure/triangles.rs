@@ -54,11 +54,12 @@ fn to_triangle(corners: [Vec3; 3], point: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::polyline::nearest_on;
 
     /// The nearest of the three sides and of the foot, if that lies inside.
     fn planted(corners: [Vec3; 3], point: DVec3) -> f64 {
         let [a, b, c] = corners.map(Vec3::as_dvec3);
-        let side = |a, b| super::super::segment::on_line(a, b, point).distance(point);
+        let side = |a, b| nearest_on(a, b, point).distance(point);
         let normal = (b - a).cross(c - a);
         let inside = |a: DVec3, b: DVec3| (b - a).cross(point - a).dot(normal) >= 0.0;
         let sides = side(a, b).min(side(b, c)).min(side(c, a));

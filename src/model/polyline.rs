@@ -17,6 +17,14 @@ pub fn is_closed(line: &[DVec3]) -> bool {
     line.len() > 2 && line.first() == line.last()
 }
 
+/// The place of the straight line from `a` to `b` nearest to another.
+#[must_use]
+pub fn nearest_on(a: DVec3, b: DVec3, place: DVec3) -> DVec3 {
+    let along = b - a;
+    let length = along.length_squared();
+    if length > 0.0 { a + along * ((place - a).dot(along) / length).clamp(0.0, 1.0) } else { a }
+}
+
 impl Polylines {
     /// Number of segments over all lines.
     #[must_use]

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::fit::clip::{ClipTolerance, Clips};
-use crate::tolerance::{CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, FIT_SHARE, LINE_FIT_SHARE};
+use crate::tolerance::{CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, FIT_SHARE, LINE_FIT_SHARE};
 
 /// Distances that growing a splat must keep, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +42,7 @@ impl Budget {
             clip: ClipTolerance {
                 outset: CLIP_OUTSET_SHARE * max_error,
                 miss: CLIP_MISS_SHARE * max_error,
+                edge: (1.0 - CLIP_QUANTIZE_SHARE) * max_error,
                 clips,
             },
         }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::backing::{Look, backed};
 use super::budget::Budget;
-use super::outline::{Outline, outlines};
+use super::outline::{Outline, holds_an_end, outlines};
 use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
@@ -203,7 +203,7 @@ impl Grower<'_> {
         if !self.keeps(&fitted.pose, outer, fitted.curvature, 1.0, region) {
             return Err(Stop::Fit);
         }
-        let clips = self.clips(&fitted.pose, outer, Care::Feasible, region)?;
+        let clips = self.clips(&fitted.pose, outer, fitted.curvature, Care::Feasible, region)?;
         if !backed(self, &fitted.pose, outer, fitted.curvature, &clips, region, Look::Coarse) {
             return Err(Stop::Bare);
         }
@@ -303,9 +303,13 @@ impl Grower<'_> {
         &self,
         pose: &Pose,
         outer: DVec2,
+        curvature: DVec2,
         care: Care,
         region: &Region,
     ) -> Result<Vec<ClipCurve>, Stop> {
+        if holds_an_end(self.surface, region, pose, outer, self.budget.clip.outset) {
+            return Err(Stop::Stray);
+        }
         let outlines = outlines(self.surface, region, pose, &self.open);
         let mut clips = Vec::new();
         for Outline { points, closed, .. } in &outlines {
@@ -318,8 +322,16 @@ impl Grower<'_> {
         let cuts = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
         let followed =
             |line: &Outline| clip::follows(&line.points, line.closed, outer, cuts, &self.budget.clip);
-        let lines = outlines.iter().map(|line| (line.points.as_slice(), line.closed));
-        if outlines.iter().all(followed) && clip::bounds_only(lines, &conics, outer, &self.budget.clip) {
+        let tolerance = &self.budget.clip;
+        let reach = match care {
+            Care::Feasible => tolerance.outset + 2.0 * tolerance.miss,
+            Care::Nearest => tolerance.edge,
+        };
+        let along = |uv: DVec2| {
+            let place = uv.extend((curvature * uv * uv).element_sum());
+            outlines.iter().any(|line| line.near(place, reach))
+        };
+        if outlines.iter().all(followed) && clip::bounds_only(along, &conics, outer, tolerance) {
             Ok(clips)
         } else {
             Err(Stop::Stray)

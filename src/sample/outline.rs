@@ -1,20 +1,35 @@
 //! The borders and feature lines of a region, in the splat's plane.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::region::Region;
 use crate::analyse::surface::{NONE, Surface};
+use crate::fit::ellipse::crossings;
 use crate::fit::pose::Pose;
+use crate::model::polyline::nearest_on;
 
 /// A directed line with the surface on its left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// Its vertices in `(u, v)`.
     pub points: Vec<DVec2>,
+    /// How high each lies over the splat's plane.
+    pub heights: Vec<f64>,
     /// Whether it is a loop; then its first point is not repeated.
     pub closed: bool,
     /// Whether the surface ends at some of it, so that nothing lies across.
     pub ends: bool,
+}
+
+impl Outline {
+    /// Whether a place in splat coordinates lies within `reach` of the line, in space.
+    #[must_use]
+    pub fn near(&self, place: DVec3, reach: f64) -> bool {
+        let vertex =
+            |n: usize| self.points[n % self.points.len()].extend(self.heights[n % self.points.len()]);
+        let sides = self.points.len() - usize::from(!self.closed);
+        (0..sides).any(|n| nearest_on(vertex(n), vertex(n + 1), place).distance(place) <= reach)
+    }
 }
 
 /// For each point, whether nothing lies across the border's side that starts there: it is a
@@ -48,14 +63,14 @@ pub fn open_sides(surface: &Surface) -> Vec<bool> {
 /// [`open_sides`] has it, or empty where nobody asks for that.
 #[must_use]
 pub fn outlines(surface: &Surface, region: &Region, pose: &Pose, open: &[bool]) -> Vec<Outline> {
-    let sides = one_sided(surface, sides(surface, region));
+    let (sides, _) = one_sided(surface, border_sides(surface, region));
     let next = |point: u32| {
         let at = sides.partition_point(|side| side.0 < point);
         sides.get(at).filter(|side| side.0 == point).map(|side| side.1)
     };
     let mut followed: Vec<u32> = sides.iter().map(|side| side.1).collect();
     followed.sort_unstable();
-    let flat = |point: u32| pose.to_local(surface.point(point)).truncate();
+    let local = |point: u32| pose.to_local(surface.point(point));
     let mut done = vec![false; sides.len()];
     let mut found = Vec::new();
     let starts = sides.iter().map(|side| side.0).filter(|point| followed.binary_search(point).is_err());
@@ -68,23 +83,26 @@ pub fn outlines(surface: &Surface, region: &Region, pose: &Pose, open: &[bool]) 
             if std::mem::replace(&mut done[at], true) {
                 break;
             }
-            points.push(flat(point));
+            points.push(local(point));
             ends |= open.get(point as usize).copied().unwrap_or_default();
             point = after;
         }
         if !points.is_empty() {
             let closed = point == start;
             if !closed {
-                points.push(flat(point));
+                points.push(local(point));
             }
-            found.push(Outline { points, closed, ends });
+            let heights = points.iter().map(|point| point.z).collect();
+            let points = points.iter().map(|point| point.truncate()).collect();
+            found.push(Outline { points, heights, closed, ends });
         }
     }
     found
 }
 
 /// The sides of all borders with an end among the members or the rim, sorted.
-fn sides(surface: &Surface, region: &Region) -> Vec<(u32, u32)> {
+#[must_use]
+pub fn border_sides(surface: &Surface, region: &Region) -> Vec<(u32, u32)> {
     let near = region
         .members
         .iter()
@@ -103,10 +121,25 @@ fn sides(surface: &Surface, region: &Region) -> Vec<(u32, u32)> {
     sides
 }
 
-/// Leaves out the sides whose other side is there too.
-fn one_sided(surface: &Surface, sides: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
+/// Whether a feature line ends inside an ellipse: part of it longer than `least` lies there, and the
+/// region is on both sides of it.
+#[must_use]
+pub fn holds_an_end(surface: &Surface, region: &Region, pose: &Pose, radii: DVec2, least: f64) -> bool {
+    if surface.carried.is_empty() {
+        return false;
+    }
+    let (_, two_sided) = one_sided(surface, border_sides(surface, region));
+    two_sided.into_iter().filter(|&(from, _)| !surface.is_carried(from)).any(|(from, to)| {
+        let [a, b] = [from, to].map(|point| pose.to_local(surface.point(point)).truncate());
+        let within = crossings(a, b, radii).map(|(enter, leave)| leave.min(1.0) - enter.max(0.0));
+        within.is_some_and(|share| share * a.distance(b) > least)
+    })
+}
+
+/// Sides whose other side is not there, and those whose other side is there too.
+fn one_sided(surface: &Surface, sides: Vec<(u32, u32)>) -> (Vec<(u32, u32)>, Vec<(u32, u32)>) {
     let place = |point: u32| surface.places[point as usize];
     let mut turned: Vec<(u32, u32)> = sides.iter().map(|&(from, to)| (place(to), place(from))).collect();
     turned.sort_unstable();
-    sides.into_iter().filter(|&(from, to)| turned.binary_search(&(place(from), place(to))).is_err()).collect()
+    sides.into_iter().partition(|&(from, to)| turned.binary_search(&(place(from), place(to))).is_err())
 }

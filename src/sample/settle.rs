@@ -95,7 +95,8 @@ fn finish(
     let pose = Pose { center: splat.center, axes: splat.axes };
     let kept = region.gather(grower.surface, &pose, splat.radii, seeds)
         && grower.keeps(&pose, splat.radii, splat.curvature, ROUNDED_SLACK, region);
-    splat.clips = kept.then(|| grower.clips(&pose, splat.radii, Care::Nearest, region).ok())??;
+    splat.clips =
+        kept.then(|| grower.clips(&pose, splat.radii, splat.curvature, Care::Nearest, region).ok())??;
     if !backed(grower, &pose, splat.radii, splat.curvature, &splat.clips, region, Look::Fine) {
         return None;
     }

@@ -9,6 +9,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::model::partner::Sheet;
+use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
 
 /// Lines over the smaller splat, in each of two directions.
@@ -98,20 +99,13 @@ fn met(small: &Splat, large: &Splat, uv: DVec2, agree: f64) -> Option<DVec3> {
     (differ && large.ellipse(there) <= 1.0).then_some(place)
 }
 
-/// Squared distance from a segment to a point.
-fn squared_distance([a, b]: [DVec3; 2], point: DVec3) -> f64 {
-    let (along, length) = (b - a, a.distance_squared(b));
-    let t = if length > 0.0 { ((point - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    point.distance_squared(a + t * along)
-}
-
 impl Meeting {
     /// The same with only those places that lie beside an end of a surface, if those are known.
     pub(super) fn beside(mut self, ends: Option<&[[DVec3; 2]]>, max_error: f64) -> Option<Self> {
         if let Some(ends) = ends {
             let reach = BESIDE * max_error;
             self.places
-                .retain(|&place| ends.iter().any(|end| squared_distance(*end, place) <= reach * reach));
+                .retain(|&place| ends.iter().any(|&[a, b]| nearest_on(a, b, place).distance(place) <= reach));
         }
         (!self.places.is_empty()).then_some(self)
     }
