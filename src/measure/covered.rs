@@ -7,10 +7,14 @@ use crate::model::asset::Asset;
 use crate::model::clip_curve::Conic;
 use crate::model::splat::Splat;
 
-/// Error bounds by which a place must lie inside another splat's border. At a feature edge both
-/// sides are cut at most one bound outside the line, so that each passes over the other's border
-/// by less.
+/// Error bounds by which a place at a feature edge must lie inside another splat's border. Both sides
+/// are cut at most one bound outside the line there, so that each passes over the other's border by
+/// less.
 const INSIDE: f64 = 3.0;
+
+/// A place farther from every line than this, in error bounds, is at no feature edge: what covers it
+/// at all hides a border there.
+pub(super) const AT_EDGE: f64 = 1.0;
 
 /// Error bounds that two splats over one place may lie apart.
 const APART: f64 = 2.0;
@@ -37,14 +41,14 @@ impl<'a> Insides<'a> {
         Self { splats, tree, max_error: asset.max_error }
     }
 
-    /// Whether a place lies well inside some splat.
-    pub(super) fn hold(&self, place: DVec3) -> bool {
-        self.tree.near(place, 0.0).any(|index| self.inside(index, place))
+    /// Whether a place on a splat's border lies inside another: well inside `at_edge` of a line.
+    pub(super) fn hold(&self, place: DVec3, own: u32, at_edge: bool) -> bool {
+        let margin = if at_edge { INSIDE * self.max_error } else { 0.0 };
+        self.tree.near(place, 0.0).any(|index| index != own && self.inside(index, place, margin))
     }
 
-    fn inside(&self, index: u32, place: DVec3) -> bool {
+    fn inside(&self, index: u32, place: DVec3, margin: f64) -> bool {
         let (splat, conics) = &self.splats[index as usize];
-        let margin = INSIDE * self.max_error;
         let local = splat.to_local(place);
         let uv = local.truncate();
         let inner = splat.radii - margin;

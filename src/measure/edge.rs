@@ -5,12 +5,12 @@ use rayon::prelude::*;
 
 use super::border::Kind;
 use super::box_tree::BoxTree;
-use super::covered::Insides;
+use super::covered::{AT_EDGE, Insides};
 use super::measures::Distances;
 use super::patch::Patch;
-use super::segment::on_line;
 use super::spread::{self, Sample};
 use crate::model::asset::Asset;
+use crate::model::polyline::nearest_on;
 
 /// Samples along the longer of lines and borders: as many as make steps far shorter than any
 /// splat.
@@ -31,9 +31,10 @@ type Line = [DVec3; 2];
 /// The two-sided distance between feature lines and the splats' clipped borders, model units.
 ///
 /// The borders are the parts of the clip curves that lie inside their splat's ellipse and are not
-/// cut away by its other curves, of all splats that touch a line with any of them. Where such a part runs through the inside of another splat, it
-/// bounds nothing that shows, as beyond the end of a line, and is left out. Samples lie equally spaced, at the same step, along the lines and
-/// along all borders; `rms` and `p99` are over both together. Each is compared with the nearest of
+/// cut away by its other curves, of all splats that touch a line with any of them. Where such a part
+/// runs through the inside of another splat, it bounds nothing that shows, as beyond the end of a
+/// line, and is left out: well inside, or, farther from every line than splats may be cut, anywhere
+/// inside. Samples lie equally spaced, at the same step, along the lines and along all borders; `rms` and `p99` are over both together. Each is compared with the nearest of
 /// the other kind, wherever that lies: an edge that no splat is cut at is as far off as the next
 /// border. Where nothing at all is cut, every sample of the lines is one diagonal off.
 ///
@@ -48,27 +49,35 @@ pub fn edge(asset: &Asset, lines: &[Vec<DVec3>]) -> Option<Distances> {
         lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]]).collect();
     let borders: Vec<Vec<Line>> =
         asset.splats.par_iter().map(|splat| borders(&Patch::new(splat), asset.max_error)).collect();
-    let borders = touching(borders, &lines, TOUCH * asset.max_error);
+    let (borders, owners) = touching(borders, &lines, TOUCH * asset.max_error);
     let step = length(&lines).max(length(&borders)) / MOST as f64;
-    let on_lines = spaced(&lines, step);
+    let on_lines: Vec<DVec3> = spaced(&lines, step).into_iter().map(|(place, _)| place).collect();
     if on_lines.is_empty() {
         return None;
     }
     let mut samples = one_sided(&on_lines, &borders, asset.diagonal);
+    let (bordering, owners): (Vec<DVec3>, Vec<u32>) =
+        spaced(&borders, step).into_iter().map(|(place, border)| (place, owners[border])).unzip();
+    let off = one_sided(&bordering, &lines, asset.diagonal);
     let insides = Insides::new(asset);
-    let bordering = spaced(&borders, step).into_par_iter().filter(|&place| !insides.hold(place));
-    samples.extend(one_sided(&bordering.collect::<Vec<_>>(), &lines, asset.diagonal));
+    let shows = |((sample, &place), &own): ((Sample, &DVec3), &u32)| {
+        let at_edge = sample.0 <= AT_EDGE * asset.max_error;
+        (!insides.hold(place, own, at_edge)).then_some(sample)
+    };
+    samples.par_extend(off.into_par_iter().zip(&bordering).zip(&owners).filter_map(shows));
     Some(spread::distances(&samples))
 }
 
-/// The borders of those splats whose own come this close to a line.
-fn touching(borders: Vec<Vec<Line>>, lines: &[Line], reach: f64) -> Vec<Line> {
+/// The borders of those splats whose own come this close to a line, and whose each is.
+fn touching(borders: Vec<Vec<Line>>, lines: &[Line], reach: f64) -> (Vec<Line>, Vec<u32>) {
     let tree = tree(lines);
     let near = |place: &DVec3| {
         tree.nearest(*place, reach, |line, _| Some((distance(lines[line as usize], *place), ()))).is_some()
     };
-    let touches = |borders: &Vec<Line>| spaced(borders, reach).iter().any(near);
-    borders.into_par_iter().filter(touches).flatten_iter().collect()
+    let touches = |borders: &Vec<Line>| spaced(borders, reach).iter().any(|(place, _)| near(place));
+    let splats = (0..borders.len() as u32).into_par_iter().zip(borders);
+    let touching = splats.filter(|(_, borders)| touches(borders));
+    touching.flat_map_iter(|(splat, borders)| borders.into_iter().map(move |line| (line, splat))).unzip()
 }
 
 /// The clipped borders of a patch as straight lines.
@@ -90,8 +99,9 @@ fn length(lines: &[Line]) -> f64 {
     lines.iter().map(|[a, b]| a.distance(*b)).sum()
 }
 
-/// Places at equal steps along lines, laid end to end; at least one if they have any length.
-fn spaced(lines: &[Line], step: f64) -> Vec<DVec3> {
+/// Places at equal steps along lines, laid end to end, each with the line it is on; at least one if
+/// they have any length.
+fn spaced(lines: &[Line], step: f64) -> Vec<(DVec3, usize)> {
     let total = length(lines);
     if total.is_nan() || total <= 0.0 {
         return Vec::new();
@@ -99,10 +109,10 @@ fn spaced(lines: &[Line], step: f64) -> Vec<DVec3> {
     let count = ((total / step).round() as usize).clamp(1, MOST);
     let place = |n: usize| (n as f64 + 0.5) / count as f64 * total;
     let (mut places, mut before) = (Vec::with_capacity(count), 0.0);
-    for &[a, b] in lines {
+    for (line, &[a, b]) in lines.iter().enumerate() {
         let along = a.distance(b);
         while places.len() < count && place(places.len()) <= before + along && along > 0.0 {
-            places.push(a.lerp(b, (place(places.len()) - before) / along));
+            places.push((a.lerp(b, (place(places.len()) - before) / along), line));
         }
         before += along;
     }
@@ -124,7 +134,7 @@ fn tree(lines: &[Line]) -> BoxTree {
 }
 
 fn distance([a, b]: Line, place: DVec3) -> f64 {
-    on_line(a, b, place).distance(place)
+    nearest_on(a, b, place).distance(place)
 }
 
 #[cfg(test)]

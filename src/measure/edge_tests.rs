@@ -80,4 +80,17 @@ fn a_border_inside_another_splat_bounds_nothing() {
     assert!((off(vec![strip(0.0, 0.6)]) - 0.6).abs() < 1e-9);
     assert!(off(vec![strip(0.0, 0.6), over]) < 1e-9);
     assert!((off(vec![strip(0.0, 0.6), lifted]) - 0.6).abs() < 1e-9, "another sheet");
+    let [barely, beside] =
+        [0.8995, 0.9005].map(|y| flat(DVec3::new(0.0, y, 0.0), DVec2::new(90.0, 0.3), vec![]));
+    assert!(off(vec![strip(0.0, 0.6), barely]) < 1e-9, "far from every line");
+    assert!((off(vec![strip(0.0, 0.6), beside]) - 0.6).abs() < 1e-9);
+}
+
+#[test]
+fn beside_a_line_a_border_barely_inside_another_splat_counts() {
+    let rms = |splats| edge(&asset(splats), &[line(0.0, 1.0)]).unwrap().rms;
+    let over = |y: f64| flat(DVec3::new(0.0, y, 0.0), DVec2::new(90.0, 0.3), vec![]);
+    let alone = rms(vec![cut(-5e-4)]);
+    assert!((alone - 5e-4).abs() < 1e-6, "{alone}");
+    assert!((rms(vec![cut(-5e-4), over(-0.2999)]) - alone).abs() < 1e-6, "by less than the margin");
 }
