@@ -80,13 +80,22 @@ fn bake_and_info_say_the_same_of_a_file() {
     assert!(bake.error.within_budget && bake.error.fit.max > 0.0 && bake.error.fit.rms <= bake.error.fit.max);
     assert!((bake.error.budget - 1e-3).abs() < 1e-9, "the default is 0.1 % of the diagonal");
     assert!(bake.counts.clipped > 0 && bake.counts.curved_clips > 0, "{:?}", bake.counts);
+    let counts = info.counts;
+    assert!(counts.cylinder > 0, "the mantle is a cylinder: {counts:?}");
+    assert_eq!(counts.flat + counts.cylinder + counts.quadric, counts.splats, "{counts:?}");
     let input = bake.input.unwrap();
     assert_eq!((input.points, input.triangles, input.line_segments), (3462, 6920, Some(194)));
     let names: Vec<String> = bake.run.unwrap().stages.into_iter().map(|stage| stage.name).collect();
     for stage in ["read", "analyse", "sample", "encode", "write"] {
         assert!(names.iter().any(|name| name == stage), "{stage} is not among {names:?}");
     }
-    assert!(ok(&["info", file]).contains("within") || ok(&["info", file]).contains("kept"));
+    let table = ok(&["info", file]);
+    assert!(table.contains("within") || table.contains("kept"));
+    let row = format!(
+        "{} ({} flat, {} cylinder, {} quadric, {} clipped)",
+        counts.splats, counts.flat, counts.cylinder, counts.quadric, counts.clipped
+    );
+    assert!(table.contains(&row), "{row} is missing in\n{table}");
 }
 
 #[test]
@@ -463,7 +472,7 @@ fn a_sweep_keeps_its_numbers_and_its_failures() {
     let costs: Vec<_> =
         sound.cases.iter().map(|c| c.outcome.as_ref().unwrap().measures.cost.clone()).collect();
     assert!(costs[0].splats < costs[1].splats && costs[1].splats < costs[3].splats, "{costs:?}");
-    assert_eq!((costs[3].quadric, costs[3].flat), (0, costs[3].splats));
+    assert_eq!((costs[3].quadric, costs[3].cylinder, costs[3].flat), (0, 0, costs[3].splats));
     for case in &sound.cases {
         let measures = &case.outcome.as_ref().unwrap().measures;
         assert!(measures.fit.max <= measures.budget && measures.image.flip_mean > 0.0, "{measures:?}");

@@ -41,8 +41,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DEG", default_value_t = DEFAULT_FOV, value_parser = fov)]
     fov: f64,
     /// What the picture shows: the lit surface, normals as colours, depth as grey, each splat in a
-    /// colour of its own, or splats by kind (flat blue, flat and clipped green, quadric orange,
-    /// quadric and clipped red)
+    /// colour of its own, or splats by kind (flat blue, flat and clipped green, cylinder violet,
+    /// cylinder and clipped pink, quadric orange, quadric and clipped red)
     #[arg(long, value_name = "shaded|normals|depth|splats|kinds", default_value = "shaded")]
     show: Show,
     /// What draws it: `auto` takes the GPU, or the CPU reference where there is none

@@ -47,6 +47,7 @@ pub fn cost<'a>(
         chunks: info.chunks.iter().map(chunk).collect(),
         splats: counts.splats as u64,
         flat: counts.flat as u64,
+        cylinder: counts.cylinder as u64,
         quadric: counts.quadric as u64,
         clipped: counts.clipped as u64,
         input_points: input_points as u64,

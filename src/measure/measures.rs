@@ -131,9 +131,11 @@ pub struct Cost {
     pub splats: u64,
     /// Pieces of a plane.
     pub flat: u64,
-    /// Pieces of a quadric.
+    /// Pieces of a parabolic cylinder: exactly one curvature is zero.
+    pub cylinder: u64,
+    /// Pieces of a quadric with two curvatures.
     pub quadric: u64,
-    /// Those with at least one clip curve.
+    /// Those with at least one clip curve or clip partner, of any kind.
     pub clipped: u64,
     /// Points of the input, as read.
     pub input_points: u64,

@@ -32,20 +32,26 @@ pub struct Splat {
 /// Covers the rounding of the few operations between a splat's numbers and its rim.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// What kind of record a splat needs.
+/// What a splat is a piece of: the fewer curvatures, the less its record costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
-    /// A piece of a plane.
+    /// A piece of a plane: both curvatures are zero.
     Flat,
-    /// A piece of a quadric.
+    /// A piece of a parabolic cylinder: exactly one curvature is zero.
+    Cylinder,
+    /// A piece of a quadric that bends both ways: no curvature is zero.
     Quadric,
 }
 
 impl Splat {
-    /// Flat or quadric.
+    /// Its kind, by how many of its curvatures are zero.
     #[must_use]
     pub fn kind(&self) -> Kind {
-        if self.curvature == DVec2::ZERO { Kind::Flat } else { Kind::Quadric }
+        match self.curvature.to_array().map(|curvature| curvature == 0.0) {
+            [true, true] => Kind::Flat,
+            [false, false] => Kind::Quadric,
+            _ => Kind::Cylinder,
+        }
     }
 
     /// A point of space in splat coordinates `(u, v, w)`.
@@ -139,6 +145,14 @@ mod tests {
         let dv = splat.surface_point(uv + DVec2::Y * step) - splat.surface_point(uv - DVec2::Y * step);
         let across = du.cross(dv).normalize();
         assert!(across.distance(splat.normal(uv)) < 1e-8);
+    }
+
+    #[test]
+    fn the_kind_is_how_many_curvatures_are_zero() {
+        let kind = |a: f64, b: f64| Splat { curvature: DVec2::new(a, b), ..bowl() }.kind();
+        assert_eq!([kind(0.0, 0.0), kind(0.0, -0.0)], [Kind::Flat; 2]);
+        assert_eq!([kind(1e-300, 0.0), kind(0.0, -2.0)], [Kind::Cylinder; 2]);
+        assert_eq!([kind(1.0, 1.0), kind(-1e-300, 2.0)], [Kind::Quadric; 2]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! written by [`wgsl`], so that neither can drift from the other.
 
 use crate::model::asset::Asset;
+use crate::model::splat::{Kind, Splat};
 
 /// Depth band of the attribute pass, in error bounds along the surface normal.
 ///
@@ -42,18 +43,36 @@ pub const NORMAL_TIE: f64 = 1e-4;
 /// Linear colour of a surface without colours.
 pub const MATTE: [f64; 3] = [0.40, 0.41, 0.43];
 
-/// Linear colours of the four classes of [`class`] under [`super::Show::Kinds`]: flat blue,
-/// flat and clipped green, quadric orange, quadric and clipped red.
-pub const CLASS_COLORS: [[f64; 3]; CLASSES] =
-    [[0.10, 0.25, 0.75], [0.06, 0.50, 0.20], [0.85, 0.40, 0.05], [0.70, 0.06, 0.06]];
+/// Linear colours of [`tint`] under [`super::Show::Kinds`]: flat blue, flat and clipped green,
+/// cylinder violet, cylinder and clipped pink, quadric orange, quadric and clipped red.
+pub const TINTS: [[f64; 3]; 6] = [
+    [0.10, 0.25, 0.75],
+    [0.06, 0.50, 0.20],
+    [0.33, 0.10, 0.70],
+    [0.80, 0.16, 0.50],
+    [0.85, 0.40, 0.05],
+    [0.70, 0.06, 0.06],
+];
+
+/// The place of a splat's colour in [`TINTS`].
+#[must_use]
+pub fn tint(splat: &Splat) -> usize {
+    let kind = match splat.kind() {
+        Kind::Flat => 0,
+        Kind::Cylinder => 1,
+        Kind::Quadric => 2,
+    };
+    usize::from(splat.is_clipped()) + 2 * kind
+}
 
 /// Splats fall into this many classes, each with its own specialised pipeline on the GPU.
 pub const CLASSES: usize = 4;
 
-/// The class of a splat: 1 for clipped, plus 2 for a quadric.
+/// The class of a splat: 1 for clipped, plus 2 for a curved one. A cylinder is cast like any
+/// other quadric.
 #[must_use]
-pub fn class(quadric: bool, clipped: bool) -> usize {
-    usize::from(clipped) + 2 * usize::from(quadric)
+pub fn class(splat: &Splat) -> usize {
+    usize::from(splat.is_clipped()) + 2 * usize::from(splat.kind() != Kind::Flat)
 }
 
 /// Depth band of an asset along the surface normal, in model units.
@@ -84,7 +103,7 @@ pub fn wgsl() -> String {
         scalars.iter().map(|(name, value)| format!("const {name}: f32 = {value:?};\n")).collect();
     let color = |c: &[f64; 3]| format!("vec3<f32>({:?}, {:?}, {:?})", c[0], c[1], c[2]);
     text += &format!("const MATTE = {};\n", color(&MATTE));
-    let classes: Vec<String> = CLASS_COLORS.iter().map(color).collect();
-    text += &format!("const CLASS_COLORS = array<vec3<f32>, {CLASSES}>({});\n", classes.join(", "));
+    let tints: Vec<String> = TINTS.iter().map(color).collect();
+    text += &format!("const TINTS = array<vec3<f32>, {}>({});\n", tints.len(), tints.join(", "));
     text
 }

@@ -81,7 +81,7 @@ fn surface<S: Scene>(scene: &S, pixel: &Pixel) -> Surface {
         direction: pixel.direction,
         depth: pixel.depth,
         index: pixel.item as u32,
-        class: scene.class(pixel.item),
+        tint: scene.tint(pixel.item),
     }
 }
 

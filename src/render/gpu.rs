@@ -3,7 +3,7 @@
 //! Three passes, as in `composite`: visibility writes depth, normal, view depth and index of
 //! the nearest hit; attributes adds weighted normals and colours; shading covers the picture
 //! once. Pictures that show identities take one more, which finds the splat seen nearest its
-//! centre. Splats are sorted into four classes (flat or quadric, clipped or not), and each
+//! centre. Splats are sorted into four classes (flat or curved, clipped or not), and each
 //! class that is not empty gets pipelines compiled without what it does not need.
 
 mod adapter;

@@ -17,8 +17,8 @@ pub enum Show {
     /// Each splat, or each input triangle or point, in a colour of its own, lit. Of several
     /// splats of one surface, the one seen nearest its centre.
     Splats,
-    /// Splats by kind, lit: flat blue, flat and clipped green, quadric orange, quadric and
-    /// clipped red.
+    /// Splats by kind, lit: flat blue, flat and clipped green, cylinder violet, cylinder and
+    /// clipped pink, quadric orange, quadric and clipped red.
     Kinds,
 }
 

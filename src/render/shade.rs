@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::constants::{CLASS_COLORS, DEPTH_GREY, NORMAL_TIE};
+use super::constants::{DEPTH_GREY, NORMAL_TIE, TINTS};
 use super::eye::Eye;
 use super::settings::{Light, Settings, Show};
 
@@ -19,8 +19,8 @@ pub struct Surface {
     pub depth: f64,
     /// Index of the nearest splat, triangle or point.
     pub index: u32,
-    /// Its class, see [`super::constants::class`].
-    pub class: usize,
+    /// Its colour by kind, see [`super::constants::tint`].
+    pub tint: usize,
 }
 
 /// Colours surfaces for one picture.
@@ -49,7 +49,7 @@ impl<'a> Shader<'a> {
         let [r, g, b] = match self.show {
             Show::Shaded => lit(surface.color),
             Show::Splats => lit(index_color(surface.index)),
-            Show::Kinds => lit(DVec3::from(CLASS_COLORS[surface.class]).as_vec3()),
+            Show::Kinds => lit(DVec3::from(TINTS[surface.tint]).as_vec3()),
             Show::Normals => {
                 let normal = self.eye.turn_back(surface.normal);
                 (0.5 * normal + 0.5 + NORMAL_TIE).to_array().map(|x| byte(x as f32))

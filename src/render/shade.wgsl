@@ -62,8 +62,8 @@ fn shade(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
             return vec4<f32>(encode(lit(index_color((word - 1u) & INDEX_MASK), normal, direction)), 1.0);
         }
         case SHOW_KINDS: {
-            var classes = CLASS_COLORS;
-            return vec4<f32>(encode(lit(classes[(word - 1u) >> INDEX_BITS], normal, direction)), 1.0);
+            var tints = TINTS;
+            return vec4<f32>(encode(lit(tints[(word - 1u) >> INDEX_BITS], normal, direction)), 1.0);
         }
         default: {
 //#if COLORED

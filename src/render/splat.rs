@@ -12,12 +12,12 @@ use super::shade;
 use super::tiles::{Hit, Look, Scene};
 use crate::model::asset::Asset;
 use crate::model::clip_curve::{ClipCurve, Conic};
-use crate::model::splat::{Kind, Splat};
+use crate::model::splat::Splat;
 
 /// A splat in view coordinates, with all that does not change from ray to ray.
 #[derive(Clone, Debug)]
 struct Cap {
-    class: usize,
+    tint: usize,
     center: DVec3,
     /// Columns `i, j, k` in view coordinates.
     axes: DMat3,
@@ -78,7 +78,7 @@ impl Cap {
         );
         let [low, high] = heights(splat);
         Self {
-            class: constants::class(splat.kind() == Kind::Quadric, splat.is_clipped()),
+            tint: constants::tint(splat),
             center,
             axes,
             radii: splat.radii,
@@ -159,7 +159,7 @@ impl Scene for Caps<'_> {
         Look { normal: (cap.axes * slope.extend(1.0)).normalize(), color: cap.color }
     }
 
-    fn class(&self, item: usize) -> usize {
-        self.caps[item].class
+    fn tint(&self, item: usize) -> usize {
+        self.caps[item].tint
     }
 }

@@ -8,7 +8,7 @@ struct Record {
     // r_u, r_v, a, b
     @location(4) shape: vec4<f32>,
     @location(5) color: vec3<f32>,
-    // index and class, first conic, number of conics
+    // index and colour by kind, first conic, number of conics
     @location(6) words: vec3<u32>,
 //#if PARTNERED
     // first partner, number of partners
@@ -136,7 +136,7 @@ struct Visible {
     @builtin(frag_depth) depth: f32,
     // Unit normal and depth.
     @location(0) surface: vec4<f32>,
-    // Index and class, plus 1 so that 0 is nothing.
+    // Index and colour by kind, plus 1 so that 0 is nothing.
     @location(1) word: u32,
 }
 

@@ -43,8 +43,8 @@ pub trait Scene: Sync {
     fn hit(&self, item: usize, ray: &Ray) -> Option<Hit>;
     /// How one looks at a hit.
     fn look(&self, item: usize, at: DVec2) -> Look;
-    /// The class of one, see [`super::constants::class`].
-    fn class(&self, _item: usize) -> usize {
+    /// The colour of one by kind, see [`super::constants::tint`].
+    fn tint(&self, _item: usize) -> usize {
         0
     }
 }

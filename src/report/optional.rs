@@ -28,7 +28,7 @@ pub fn all(asset: &Asset, counts: &Counts, origin: Option<&Origin>) -> Vec<Optio
     };
     let partnered = asset.splats.iter().any(|splat| !splat.partners.is_empty());
     vec![
-        thing("curvature", counts.quadric > 0, no_curvature(origin)),
+        thing("curvature", counts.flat < counts.splats, no_curvature(origin)),
         thing("clips", counts.clipped > 0, no_clips(origin)),
         thing("curved_clips", counts.curved_clips > 0, no_curved_clips(counts, origin)),
         thing("partners", partnered, no_partners(origin)),

@@ -45,13 +45,7 @@ impl Report {
         }
         let per_point = self.density.bytes_per_point.map_or(String::new(), |n| format!(", {n:.2} a point"));
         text.row("bytes", format!("{} ({:.1} a splat{per_point})", file.bytes, self.density.bytes_per_splat));
-        text.row(
-            "splats",
-            format!(
-                "{} ({} flat, {} quadric, {} clipped)",
-                counts.splats, counts.flat, counts.quadric, counts.clipped
-            ),
-        );
+        text.row("splats", format!("{} ({}, {} clipped)", counts.splats, counts.kinds(), counts.clipped));
         text.row(
             "clip curves",
             format!("{} curved, {} straight", counts.curved_clips, counts.straight_clips),

@@ -155,7 +155,15 @@ fn what_is_left_out_says_why() {
 #[test]
 fn the_table_names_what_matters() {
     let table = full().table();
-    for part in ["a.qsplat", "a.ply", "4 (4 flat", "max 1.50e-4", "POSN", "sample", "kept"] {
+    for part in [
+        "a.qsplat",
+        "a.ply",
+        "4 (4 flat, 0 cylinder, 0 quadric, 0 clipped)",
+        "max 1.50e-4",
+        "POSN",
+        "sample",
+        "kept",
+    ] {
         assert!(table.contains(part), "{part} is missing in\n{table}");
     }
 }

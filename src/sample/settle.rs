@@ -26,6 +26,10 @@ const ROUNDED_SLACK: f64 = (1.0 - 1e-6) / FIT_SHARE;
 /// A quadric whose sagittas are below this many budgets may do as a plane.
 const FLAT_SAGITTA: f64 = 2.0;
 
+/// A quadric whose lesser sagitta is at most this many budgets may do as a cylinder. Bent by that
+/// much, it still lies within half a budget of a cylinder through its middle height.
+const CYLINDER_SAGITTA: f64 = 1.0;
+
 /// A splat that keeps the budget, and what it covers.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -56,9 +60,17 @@ pub(super) fn settle(
         for curvature in plane.into_iter().chain(quadric) {
             let found = [MORE_PAD * grower.budget.pad, grower.budget.pad].into_iter().find_map(|pad| {
                 let more = grower.budget.padded_by(domain.radii, pad) - outer;
-                rounded(grower, &domain.pose, outer + more, curvature)
-                    .and_then(|splat| finish(grower, splat, more, domain.rank, seeds, region))
-                    .filter(|candidate| candidate.pieces.binary_search(&piece).is_ok())
+                let mut ended = |pose: &Pose, curvature: DVec2| {
+                    rounded(grower, pose, outer + more, curvature)
+                        .and_then(|splat| finish(grower, splat, more, domain.rank, seeds, region))
+                };
+                let found = ended(&domain.pose, curvature)
+                    .filter(|candidate| candidate.pieces.binary_search(&piece).is_ok())?;
+                // A zero costs the file less than a number, so a cylinder that does as much will do.
+                let cylinder = cylinder(&domain.pose, outer + more, curvature, grower.budget.fit)
+                    .and_then(|(pose, curvature)| ended(&pose, curvature))
+                    .filter(|cylinder| cylinder.covers(found.pieces.iter().copied()));
+                Some(cylinder.unwrap_or(found))
             });
             if found.is_some() {
                 return found;
@@ -67,6 +79,19 @@ pub(super) fn settle(
         domain = grower.attempt(&domain.pose, domain.radii * shrink, seeds, region).ok()?;
     }
     None
+}
+
+/// The cylinder nearest to a quadric over an ellipse, as pose and curvature: the lesser sagitta is
+/// zero, and the centre moves along `k` by half of what that takes away. `None` if the quadric bends
+/// too much to do as one, or is one already.
+fn cylinder(pose: &Pose, radii: DVec2, curvature: DVec2, fit: f64) -> Option<(Pose, DVec2)> {
+    let sagitta = curvature * radii * radii;
+    let [kept, lost] =
+        if sagitta.x.abs() >= sagitta.y.abs() { [DVec2::X, DVec2::Y] } else { [DVec2::Y, DVec2::X] };
+    let lost = sagitta.dot(lost);
+    let center = pose.center + 0.5 * lost * pose.axes.z_axis;
+    let slight = lost != 0.0 && lost.abs() <= CYLINDER_SAGITTA * fit;
+    slight.then_some((Pose { center, ..*pose }, curvature * kept))
 }
 
 /// A splat as it will be stored, not yet cut or coloured.
@@ -213,4 +238,26 @@ fn mean_color(grower: &Grower, pieces: &[u32]) -> [u8; 3] {
     }
     let count = 3 * pieces.len() as u64;
     sums.map(|sum| ((sum + count / 2) / count) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat3, Vec2Swizzles};
+
+    #[test]
+    fn the_nearest_cylinder_halves_what_is_lost() {
+        let pose = Pose { center: DVec3::ONE, axes: DMat3::IDENTITY };
+        let radii = DVec2::new(0.5, 2.0);
+        // Sagittas of 1 and -1/32.
+        let curvature = DVec2::new(4.0, -1.0 / 128.0);
+        let found = |radii: DVec2, curvature: DVec2| cylinder(&pose, radii, curvature, 1.0 / 32.0);
+        let bent = DVec2::new(4.0, 0.0);
+        let moved = Pose { center: DVec3::new(1.0, 1.0, 1.0 - 1.0 / 64.0), ..pose };
+        assert_eq!(found(radii, curvature), Some((moved, bent)));
+        assert_eq!(found(radii.yx(), curvature.yx()), Some((moved, bent.yx())));
+        assert!(cylinder(&pose, radii, curvature, 1.0 / 33.0).is_none(), "it bends too much");
+        assert!(found(radii, bent).is_none(), "it is one already");
+        assert!(found(radii, DVec2::ZERO).is_none(), "a plane is no cylinder");
+    }
 }

@@ -25,7 +25,7 @@ const VERDICT: [About; 2] = [
 type Column = (&'static str, fn(&Outcome) -> String);
 
 /// The columns of an outcome. Names, units and order are those of `docs/sweep-schema.md`.
-const COLUMNS: [Column; 34] = [
+const COLUMNS: [Column; 35] = [
     ("bake_seconds", |o| o.bake_seconds.to_string()),
     ("bake_cpu_seconds", |o| o.bake_cpu_seconds.to_string()),
     ("frame_ms", |o| o.frame_ms.to_string()),
@@ -35,6 +35,7 @@ const COLUMNS: [Column; 34] = [
     ("bytes_per_point", |o| o.measures.cost.bytes_per_point.to_string()),
     ("splats", |o| o.measures.cost.splats.to_string()),
     ("flat", |o| o.measures.cost.flat.to_string()),
+    ("cylinder", |o| o.measures.cost.cylinder.to_string()),
     ("quadric", |o| o.measures.cost.quadric.to_string()),
     ("clipped", |o| o.measures.cost.clipped.to_string()),
     ("overlap", |o| optional(o.measures.cost.overlap)),

@@ -9,11 +9,12 @@ use crate::report::page::escape;
 /// A column of the table of settings: head, unit or explanation, value.
 type Column = (&'static str, &'static str, fn(&Outcome) -> String);
 
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 15] = [
     ("bake", "s", |o| significant(o.bake_seconds)),
     ("bytes", "", |o| grouped(o.measures.cost.bytes)),
     ("splats", "", |o| grouped(o.measures.cost.splats)),
     ("flat", "", |o| grouped(o.measures.cost.flat)),
+    ("cylinder", "", |o| grouped(o.measures.cost.cylinder)),
     ("clipped", "", |o| grouped(o.measures.cost.clipped)),
     ("B/splat", "", |o| format!("{:.1}", o.measures.cost.bytes_per_splat)),
     ("fit max", "budgets", |o| format!("{:.2}", budgets(o, o.measures.fit.max))),

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::source::{INDEX_BITS, show_number};
 use crate::model::asset::Asset;
-use crate::model::splat::{Kind, Splat};
+use crate::model::splat::Splat;
 use crate::render::constants;
 use crate::render::eye::Eye;
 use crate::render::partner::locals;
@@ -86,11 +86,6 @@ fn split(point: DVec3) -> [[f32; 3]; 2] {
     [high.to_array(), (point - high.as_dvec3()).as_vec3().to_array()]
 }
 
-/// The class of a splat, see [`constants::class`].
-pub fn class(splat: &Splat) -> usize {
-    constants::class(splat.kind() == Kind::Quadric, splat.is_clipped())
-}
-
 /// The record of one splat; its conics are appended to the list.
 pub fn splat(splat: &Splat, index: usize, has_colors: bool, conics: &mut Vec<ConicRecord>) -> SplatRecord {
     let first = conics.len() as u32;
@@ -109,7 +104,11 @@ pub fn splat(splat: &Splat, index: usize, has_colors: bool, conics: &mut Vec<Con
         j: splat.axes.y_axis.as_vec3().to_array(),
         shape: [radii.x, radii.y, curvature.x, curvature.y],
         color: color.to_array(),
-        words: [index as u32 | (class(splat) as u32) << INDEX_BITS, first, splat.clips.len() as u32],
+        words: [
+            index as u32 | (constants::tint(splat) as u32) << INDEX_BITS,
+            first,
+            splat.clips.len() as u32,
+        ],
     }
 }
 

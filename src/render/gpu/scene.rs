@@ -147,7 +147,7 @@ impl Sorted {
         for (class, range) in ranges.iter_mut().enumerate() {
             let start = records.len() as u32;
             let all = asset.splats.iter().enumerate();
-            for (n, splat) in all.filter(|(_, splat)| records::class(splat) == class) {
+            for (n, splat) in all.filter(|(_, splat)| constants::class(splat) == class) {
                 records.push(records::splat(splat, n, asset.has_colors, &mut conics));
                 partner_ranges.push(records::partners(splat, &mut partners));
             }

@@ -6,8 +6,11 @@
 use crate::render::constants;
 use crate::render::settings::Show;
 
-/// Bits of an identity word that hold the splat's index; the rest hold its class.
-pub const INDEX_BITS: u32 = 30;
+/// Bits of an identity word that hold the splat's index; the rest hold its colour by kind
+/// ([`constants::tint`]).
+pub const INDEX_BITS: u32 = 29;
+
+const _: () = assert!(constants::TINTS.len() <= 1 << (u32::BITS - INDEX_BITS));
 
 /// What the splat passes are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

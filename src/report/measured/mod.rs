@@ -73,7 +73,10 @@ fn cost(text: &mut Table, measures: &Measures) {
     );
     text.row(
         "splats",
-        format!("{} ({} flat, {} quadric, {} clipped)", cost.splats, cost.flat, cost.quadric, cost.clipped),
+        format!(
+            "{} ({} flat, {} cylinder, {} quadric, {} clipped)",
+            cost.splats, cost.flat, cost.cylinder, cost.quadric, cost.clipped
+        ),
     );
     let area = cost.overlap.map_or_else(
         || "the area of a cloud is not known".into(),
