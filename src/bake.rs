@@ -132,13 +132,14 @@ pub fn bake(
     let total = surface.pieces.len() as u64;
     let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));
     clock.stage(progress, "cover");
-    let (chosen, choice) = cover(&grower, &regions, found, options.effort);
+    let (cover, choice) = cover(&grower, &regions, found, options.effort);
     if choice.uncovered > 0 {
         return Err(Error::Internal(format!(
             "{} pieces of the surface could not be covered",
             choice.uncovered
         )));
     }
+    let chosen = cover.chosen();
     let (splats, partners) = match options.clips {
         Clips::Curved | Clips::Straight => (chosen.into_iter().map(|one| one.splat).collect(), None),
         Clips::Partners => {

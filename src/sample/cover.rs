@@ -68,24 +68,19 @@ impl PartialEq for Gain {
 impl Eq for Gain {}
 
 /// Candidates, and those of them that are chosen to cover every piece.
-pub(super) struct Cover {
+pub struct Cover {
     pub(super) candidates: Vec<Candidate>,
     /// Indices of candidates.
     pub(super) chosen: Vec<usize>,
     /// For each piece, how many of the chosen cover it.
     pub(super) times: Vec<u32>,
     /// The area of each piece.
-    areas: Vec<f64>,
+    pub(super) areas: Vec<f64>,
 }
 
 /// Chooses from the candidates, adding to them what no candidate covers.
 #[must_use]
-pub fn cover(
-    grower: &Grower,
-    regions: &Regions,
-    candidates: Vec<Candidate>,
-    effort: u8,
-) -> (Vec<Candidate>, Choice) {
+pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, effort: u8) -> (Cover, Choice) {
     let areas: Vec<f64> = (0..grower.surface.pieces.len() as u32).map(|p| grower.surface.area(p)).collect();
     let mut choice = Choice::default();
     let mut times = vec![0_u32; areas.len()];
@@ -95,12 +90,17 @@ pub fn cover(
     choice.candidates = cover.candidates.len();
     choice.redundant = cover.drop_redundant();
     choice.merged = improve(grower, regions, &mut cover, effort);
-    let Cover { candidates, chosen, .. } = cover;
-    choice.low_rank = chosen.iter().filter(|&&index| candidates[index].rank < 6).count();
-    (chosen.into_iter().map(|index| candidates[index].clone()).collect(), choice)
+    choice.low_rank = cover.chosen.iter().filter(|&&index| cover.candidates[index].rank < 6).count();
+    (cover, choice)
 }
 
 impl Cover {
+    /// The chosen candidates, in the order in which they were chosen.
+    #[must_use]
+    pub fn chosen(&self) -> Vec<Candidate> {
+        self.chosen.iter().map(|&index| self.candidates[index].clone()).collect()
+    }
+
     /// The pieces that no other splat covers than these, ascending.
     pub(super) fn own(&self, these: &[usize]) -> Vec<u32> {
         let lists = these.iter().map(|&index| self.candidates[index].pieces.as_slice());

@@ -8,6 +8,7 @@ pub mod cover;
 pub mod enclose;
 pub mod facet;
 pub mod grow;
+pub mod lower_bound;
 pub mod margin;
 pub mod moves;
 pub mod outline;
