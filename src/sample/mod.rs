@@ -14,4 +14,5 @@ pub mod moves;
 pub mod outline;
 pub mod polygon;
 pub mod region;
+mod set_cover;
 pub mod settle;

@@ -11,12 +11,7 @@
 
 use rayon::prelude::*;
 
-use crate::analyse::surface::Rows;
-
-/// Rounds at most. After half as many four models were within 0.2 % of the optimum of the linear
-/// relaxation, as another solver (HiGHS) found it, after these within 0.1 %; half as many again
-/// gained a hundred thousandth.
-const ROUNDS: usize = 1000;
+use super::SetCover;
 
 /// A known cover that costs by no more than this share more than the bound is as good as proved the
 /// best.
@@ -41,48 +36,59 @@ const LEAST_FACTOR: f64 = 1e-5;
 /// them over.
 const SHARE: usize = 256;
 
-/// A set cover whose constraints are relaxed.
-pub(super) struct Relaxation<'a> {
-    /// For each candidate what it costs.
-    pub(super) costs: &'a [f64],
-    /// For each candidate the pieces it covers, of those below.
-    pub(super) sets: &'a Rows,
-    /// How many pieces there are, each covered by some candidate.
-    pub(super) pieces: usize,
+/// Where an ascent ended.
+pub(in crate::sample) struct Peak {
+    /// The highest bound found.
+    pub(in crate::sample) bound: f64,
+    /// Its multipliers.
+    pub(in crate::sample) multipliers: Vec<f64>,
+    /// Rounds that were gone.
+    pub(in crate::sample) rounds: usize,
 }
 
-impl Relaxation<'_> {
-    /// The highest bound found beside a cover that costs `spent`, and the rounds it took. The same
-    /// whatever the threads.
-    pub(super) fn highest(&self, spent: f64) -> (f64, usize) {
-        let (mut multipliers, mut slope) = (self.feasible(), vec![0.0; self.pieces]);
-        let mut direction = vec![0.0; self.pieces];
-        let (mut highest, mut factor, mut idle) = (0.0, FACTOR, 0);
-        for round in 1..=ROUNDS {
+impl SetCover {
+    /// Climbs from some multipliers, beside a cover that costs `spent`, for so many rounds at most,
+    /// and shows the multipliers of each round from 1 on. The same whatever the threads.
+    pub(in crate::sample) fn ascend(
+        &self,
+        start: Vec<f64>,
+        spent: f64,
+        rounds: usize,
+        mut show: impl FnMut(usize, &[f64]),
+    ) -> Peak {
+        let (mut slope, mut direction) = (vec![0.0; self.pieces], vec![0.0; self.pieces]);
+        let mut peak = Peak { bound: f64::NEG_INFINITY, multipliers: start.clone(), rounds: 0 };
+        let (mut multipliers, mut factor, mut idle) = (start, FACTOR, 0);
+        for round in 1..=rounds {
             let value = self.value(&multipliers, &mut slope);
-            idle = if value > highest { 0 } else { idle + 1 };
-            highest = f64::max(highest, value);
+            show(round, &multipliers);
+            peak.rounds = round;
+            idle += 1;
+            if value > peak.bound {
+                (peak.bound, idle) = (value, 0);
+                peak.multipliers.copy_from_slice(&multipliers);
+            }
             if idle == PATIENCE {
                 (factor, idle) = (0.5 * factor, 0);
             }
             let steep = turn(&mut direction, &slope, &multipliers);
-            let go_on = spent - highest > GAP * spent && factor > LEAST_FACTOR && steep > 0.0;
+            let go_on = spent - peak.bound > GAP * spent && factor > LEAST_FACTOR && steep > 0.0;
             if !go_on {
-                return (highest, round);
+                break;
             }
             let step = factor * (spent - value) / steep;
             for (multiplier, along) in multipliers.iter_mut().zip(&direction) {
                 *multiplier = (*multiplier + step * along).max(0.0);
             }
         }
-        (highest, ROUNDS)
+        peak
     }
 
     /// Multipliers that leave no reduced cost negative: each candidate's cost shared by what it
     /// covers, of which a piece takes the least.
-    fn feasible(&self) -> Vec<f64> {
+    pub(in crate::sample) fn feasible(&self) -> Vec<f64> {
         let mut multipliers = vec![f64::INFINITY; self.pieces];
-        for (index, cost) in (0_u32..).zip(self.costs) {
+        for (index, cost) in (0_u32..).zip(&self.costs) {
             let pieces = self.sets.row(index);
             for &piece in pieces {
                 let least = &mut multipliers[piece as usize];
