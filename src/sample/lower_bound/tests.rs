@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::sample::set_cover::tests::cheapest;
 
 /// Bounds of a cover of pieces of the same area.
 fn bound(costs: &[f64], covered: &[Vec<u32>], pieces: usize, spent: f64) -> LowerBound {
@@ -81,21 +82,6 @@ fn covers(pieces: u32, candidates: usize) -> impl Strategy<Value = Sets> {
         sets.push((40.0, (0..pieces).collect()));
         sets
     })
-}
-
-/// The cheapest of all choices that cover some pieces.
-fn cheapest(costs: &[f64], covered: &[Vec<u32>], pieces: usize) -> f64 {
-    let masks: Vec<u32> = covered.iter().map(|set| set.iter().map(|piece| 1 << piece).sum()).collect();
-    let all = (1_u32 << pieces) - 1;
-    let mut least = vec![f64::INFINITY; 1 << pieces];
-    least[0] = 0.0;
-    for have in 0..all as usize {
-        for (mask, cost) in masks.iter().zip(costs) {
-            let with = have | *mask as usize;
-            least[with] = least[with].min(least[have] + cost);
-        }
-    }
-    least[all as usize]
 }
 
 /// The cheapest cover of `pieces` by intervals `start..end`.
