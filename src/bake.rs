@@ -38,6 +38,7 @@ use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::grow::Grower;
+use crate::sample::lower_bound::LowerBound;
 use crate::sample::outline::open_sides;
 pub use found_lines::found_lines;
 use meant::check_noise;
@@ -47,7 +48,7 @@ use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `partners`, `encode`, `write`).
+    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `bound`, `partners`, `encode`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
     fn advance(&mut self, done: u64, total: u64);
@@ -89,6 +90,8 @@ pub struct Baked {
     pub features: Found,
     /// How the splats were chosen.
     pub choice: Choice,
+    /// What the choice costs and what any other costs at least, if that was asked for.
+    pub lower_bound: Option<LowerBound>,
     /// What came of the clip partners, if splats are cut by them.
     pub partners: Option<Tally>,
     /// Points of the surface that the splats were fitted to.
@@ -132,13 +135,18 @@ pub fn bake(
     let total = surface.pieces.len() as u64;
     let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));
     clock.stage(progress, "cover");
-    let (chosen, choice) = cover(&grower, &regions, found, options.effort);
+    let (cover, choice) = cover(&grower, &regions, found, options.effort);
     if choice.uncovered > 0 {
         return Err(Error::Internal(format!(
             "{} pieces of the surface could not be covered",
             choice.uncovered
         )));
     }
+    let lower_bound = options.lower_bound.then(|| {
+        clock.stage(progress, "bound");
+        cover.lower_bound()
+    });
+    let chosen = cover.chosen();
     let (splats, partners) = match options.clips {
         Clips::Curved | Clips::Straight => (chosen.into_iter().map(|one| one.splat).collect(), None),
         Clips::Partners => {
@@ -169,6 +177,7 @@ pub fn bake(
         stand_in,
         features,
         choice,
+        lower_bound,
         partners,
         samples,
         left_out,

@@ -110,6 +110,44 @@ fn the_same_bytes_for_any_number_of_threads() {
 }
 
 #[test]
+fn a_lower_bound_is_told_where_asked_for_and_changes_no_byte() {
+    let (directory, file) = baked();
+    let read = |name: &str| -> Report {
+        serde_json::from_str(&fs::read_to_string(directory.path().join(name)).unwrap()).unwrap()
+    };
+    assert!(read("report.json").choice.unwrap().lower_bound.is_none());
+    let (input, edges) = (fixture("capped-cylinder.ply"), fixture("capped-cylinder.edges.obj"));
+    let bounds = ["1", "3"].map(|threads| {
+        let name = format!("bounded-{threads}.json");
+        let [other, report] = ["bounded.qsplat", &name].map(|name| text(&directory.path().join(name)));
+        let table = ok(&[
+            "bake",
+            &input,
+            "--edges",
+            &edges,
+            "-o",
+            &other,
+            "--report",
+            &report,
+            "--lower-bound",
+            "--threads",
+            threads,
+        ]);
+        assert!(table.contains("by its candidates (within "), "{table}");
+        assert!(fs::read(&other).unwrap() == fs::read(file).unwrap(), "the bound changes the file");
+        let report = read(&name);
+        assert!(report.run.unwrap().stages.iter().any(|stage| stage.name == "bound"));
+        let bound = report.choice.unwrap().lower_bound.unwrap();
+        // Nine bytes are the least that a splat costs.
+        assert!(bound.cost >= 9.0 * report.counts.splats as f64, "{bound:?}");
+        assert!(0.0 < bound.area && bound.area <= bound.lagrangian, "{bound:?}");
+        assert!(bound.lagrangian <= bound.cost && bound.lagrangian > 0.5 * bound.cost, "{bound:?}");
+        bound
+    });
+    assert!(bounds[0] == bounds[1], "{bounds:?}");
+}
+
+#[test]
 fn an_absolute_bound_is_in_input_units() {
     let directory = tempfile::tempdir().unwrap();
     let (file, report) = (text(&directory.path().join("a.qsplat")), text(&directory.path().join("a.json")));

@@ -142,6 +142,9 @@ pub struct Options {
     pub shapes: Shapes,
     /// What splats may be cut by; less than all is for comparison, at the same guarantees.
     pub clips: Clips,
+    /// Whether to find out how little any cover by the same candidates could cost. It changes nothing
+    /// about the splats.
+    pub lower_bound: bool,
 }
 
 /// Between the fastest bake and the fewest bytes.
@@ -160,6 +163,7 @@ impl Default for Options {
             colors: Colors::default(),
             shapes: Shapes::default(),
             clips: Clips::default(),
+            lower_bound: false,
         }
     }
 }

@@ -15,7 +15,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::asset::{Asset, Counts};
 pub use optional::Optional;
-pub use schema::{Absent, Accuracy, Choice, Chunk, Density, File, Fit, Input, Model, Moved, Options, Run};
+pub use schema::{
+    Absent, Accuracy, Choice, Chunk, Density, File, Fit, Input, LowerBound, Model, Moved, Options, Run,
+};
 
 /// Name and version of the schema. The number grows when a key changes its meaning or goes;
 /// new keys may come without.

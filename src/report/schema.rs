@@ -8,6 +8,7 @@ use super::memory;
 use crate::bake::StageTime;
 use crate::format::{self, ChunkInfo, FileInfo};
 use crate::model::asset::Asset;
+pub use crate::sample::lower_bound::LowerBound;
 
 /// What was baked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -110,6 +111,10 @@ pub struct Choice {
     pub last_resorts: u64,
     /// Splats whose points did not determine a whole quadric.
     pub low_rank: u64,
+    /// What the choice costs and what any other by the same candidates costs at least; `None` where
+    /// that was not asked for.
+    #[serde(default)]
+    pub lower_bound: Option<LowerBound>,
 }
 
 /// The file.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Choice, File, Moved, Report, Run};
+use super::{Choice, File, LowerBound, Moved, Report, Run};
 
 impl Report {
     /// Lines of plain text, ending in a line break.
@@ -90,7 +90,7 @@ impl Table {
     }
 
     fn choice(&mut self, choice: &Choice) {
-        let Choice { samples, candidates, redundant, merged, last_resorts, low_rank } = choice;
+        let Choice { samples, candidates, redundant, merged, last_resorts, low_rank, lower_bound } = choice;
         self.row(
             "chosen from",
             format!("{candidates} candidates over {samples} samples, {redundant} redundant, {merged} merged"),
@@ -98,6 +98,22 @@ impl Table {
         self.row(
             "fell back",
             format!("{low_rank} fits of lower order, {last_resorts} pieces with a splat of their own"),
+        );
+        if let Some(bound) = lower_bound {
+            self.lower_bound(bound);
+        }
+    }
+
+    fn lower_bound(&mut self, bound: &LowerBound) {
+        let LowerBound { cost, area, lagrangian, .. } = bound;
+        // Rounded to the side on which what is said stays true.
+        let (area, least) = (area.floor(), lagrangian.floor());
+        let within = (1e3 * bound.excess()).ceil() / 10.0;
+        self.row(
+            "cover",
+            format!(
+                "cost {cost:.0}, at least {least:.0} by its candidates (within {within:.1} %; {area:.0} by area)"
+            ),
         );
     }
 

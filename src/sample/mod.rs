@@ -1,5 +1,5 @@
 //! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
-//! became redundant, move and merge what is left.
+//! became redundant, move and merge what is left, choose anew from all that were grown.
 
 pub mod backing;
 pub mod budget;
@@ -7,10 +7,14 @@ pub mod candidates;
 pub mod cover;
 pub mod enclose;
 pub mod facet;
+mod gain;
 pub mod grow;
+pub mod lower_bound;
 pub mod margin;
 pub mod moves;
 pub mod outline;
 pub mod polygon;
+mod rechoose;
 pub mod region;
+mod set_cover;
 pub mod settle;

@@ -80,9 +80,13 @@ fn pass(grower: &Grower, regions: &Regions, cover: &mut Cover, partners: usize) 
             .collect();
         for Move { old, new } in found.into_iter().flatten() {
             // An earlier move of the batch may have left more for these to cover alone.
-            if old.iter().all(|&index| alive[index]) && cover.serves(&old, &new) {
+            let holds = old.iter().all(|&index| alive[index]) && cover.serves(&old, &new);
+            if holds && pays(cover, &old, &new) {
                 old.iter().for_each(|&index| alive[index] = false);
                 cover.replace(&old, new);
+            } else {
+                // It comes too late here, or is too dear, but may do in a choice made anew.
+                cover.candidates.push(new);
             }
         }
     }
@@ -106,14 +110,18 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The first merger found of a splat with one of its neighbours, or where it moves alone.
+    /// The first merger found of a splat with one of its neighbours that pays, or where it moves
+    /// alone, whether or not that does.
     fn best(&self, index: usize, partners: usize, region: &mut Region) -> Option<Move> {
         if !self.alive[index] {
             return None;
         }
         let nearest = self.neighbours(index).into_iter().take(partners);
         let mut mergers = nearest.filter_map(|other| Some((other, self.pair(index, other)?)));
-        let merger = mergers.find_map(|(other, need)| self.move_to(&need, vec![index, other], region));
+        let merger = mergers.find_map(|(other, need)| {
+            let found = self.move_to(&need, vec![index, other], region)?;
+            pays(self.cover, &found.old, &found.new).then_some(found)
+        });
         merger.or_else(|| {
             let axes = self.cover.candidates[index].splat.axes;
             let need = Need::new(self.grower.surface, self.cover.own(&[index]), axes)?;
@@ -144,11 +152,15 @@ impl Search<'_> {
         (need.reach <= most).then_some(need)
     }
 
-    /// A splat for a need in the place of those it comes from, if it costs no more: for one it
-    /// may cost the same.
+    /// A splat for a need in the place of those it comes from, whatever it costs.
     fn move_to(&self, need: &Need, old: Vec<usize>, region: &mut Region) -> Option<Move> {
         let new = need.covered(self.grower, region)?;
-        let spent: f64 = old.iter().map(|&index| cost(&self.cover.candidates[index].splat)).sum();
-        (cost(&new.splat) <= spent).then_some(Move { old, new })
+        Some(Move { old, new })
     }
+}
+
+/// Whether a splat costs no more than those it is to replace: one may cost as much as one.
+fn pays(cover: &Cover, old: &[usize], new: &Candidate) -> bool {
+    let spent: f64 = old.iter().map(|&index| cost(&cover.candidates[index].splat)).sum();
+    cost(&new.splat) <= spent
 }
