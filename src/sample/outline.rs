@@ -21,6 +21,9 @@ pub struct Outline {
     pub ends: bool,
 }
 
+/// A side of a border: the points it leads from and to.
+pub type Side = (u32, u32);
+
 impl Outline {
     /// Whether a place in splat coordinates lies within `reach` of the line, in space.
     #[must_use]
@@ -102,13 +105,13 @@ pub fn outlines(surface: &Surface, region: &Region, pose: &Pose, open: &[bool]) 
 
 /// The sides of all borders with an end among the members or the rim, sorted.
 #[must_use]
-pub fn border_sides(surface: &Surface, region: &Region) -> Vec<(u32, u32)> {
+pub fn border_sides(surface: &Surface, region: &Region) -> Vec<Side> {
     let near = region
         .members
         .iter()
         .map(|member| member.point)
         .chain(region.rim.iter().map(|&(_, outside)| outside));
-    let mut sides: Vec<(u32, u32)> = near
+    let mut sides: Vec<Side> = near
         .filter(|&point| surface.on_border(point))
         .flat_map(|point| {
             let (prev, next) = (surface.border_prev[point as usize], surface.border_next[point as usize]);
@@ -137,7 +140,7 @@ pub fn holds_an_end(surface: &Surface, region: &Region, pose: &Pose, radii: DVec
 }
 
 /// Sides whose other side is not there, and those whose other side is there too.
-fn one_sided(surface: &Surface, sides: Vec<(u32, u32)>) -> (Vec<(u32, u32)>, Vec<(u32, u32)>) {
+fn one_sided(surface: &Surface, sides: Vec<Side>) -> (Vec<Side>, Vec<Side>) {
     let place = |point: u32| surface.places[point as usize];
     let mut turned: Vec<(u32, u32)> = sides.iter().map(|&(from, to)| (place(to), place(from))).collect();
     turned.sort_unstable();
