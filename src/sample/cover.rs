@@ -207,7 +207,7 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
                 continue;
             }
             let last_resort = grown.is_none();
-            match grown.or_else(|| regions.with(|region| polygon::over(grower, piece, region))) {
+            match grown.or_else(|| polygon::over(grower, piece)) {
                 Some(candidate) => {
                     choice.last_resorts += usize::from(last_resort);
                     cover.choose(candidate);
