@@ -3,10 +3,10 @@
 //! The angle alone also finds the bumps of a noisy scan, so what it finds must go on along
 //! the surface the way an edge of a thing does: see [`super::chains`].
 
-use glam::DVec3;
 use rayon::prelude::*;
 
 use super::chains;
+use super::edge_paths::{EdgePaths, STRAIGHT};
 use super::edges::{Edges, crease_cosine, face_normals};
 use super::weld::Welded;
 
@@ -19,9 +19,6 @@ const WEAK_SHARE: f64 = 0.4;
 pub fn weak_cosine(degrees: f64) -> f64 {
     libm::cos((WEAK_SHARE * degrees).to_radians())
 }
-
-/// A crease goes on only along edges that bend from it by less than this (cosine of 45°).
-const STRAIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Marks the edges whose faces' normals differ by more than an angle in degrees, and those
 /// that carry such a crease on, straight and hardly less sharp.
@@ -45,89 +42,42 @@ pub fn creases(welded: &Welded, edges: &Edges, degrees: f64) -> Vec<bool> {
 
 /// Marks weak edges that carry a marked one straight on beyond its end, or leave a corner of two.
 fn carry_on(welded: &Welded, edges: &Edges, weak: &[bool], marked: &mut [bool]) {
-    let ridges = Ridges::new(welded, edges, |index| weak[index] || marked[index]);
+    let paths = EdgePaths::new(welded, edges, |index| weak[index] || marked[index]);
     let ends = edges.edges.iter().zip(0_u32..).filter(|&(_, index)| marked[index as usize]);
     let mut open: Vec<(u32, u32)> =
         ends.flat_map(|(edge, index)| edge.ends.map(|end| (index, end))).collect();
-    for (index, vertex) in ridges.thirds(marked) {
+    let vertices = 0..welded.positions.len() as u32;
+    let thirds: Vec<(u32, u32)> =
+        vertices.filter_map(|vertex| Some((third(&paths, marked, vertex)?, vertex))).collect();
+    for (index, vertex) in thirds {
         marked[index as usize] = true;
-        open.push((index, ridges.beyond(index, vertex)));
+        open.push((index, paths.beyond(index, vertex)));
     }
     while let Some((edge, vertex)) = open.pop() {
-        if ridges.around(vertex).filter(|&index| marked[index as usize]).count() > 1 {
+        if paths.around(vertex).iter().filter(|&&index| marked[index as usize]).count() > 1 {
             continue;
         }
-        if let Some(index) = ridges.onward(edge, vertex) {
+        if let Some(index) = paths.onward(edge, vertex) {
             marked[index as usize] = true;
-            open.push((index, ridges.beyond(index, vertex)));
+            open.push((index, paths.beyond(index, vertex)));
         }
     }
 }
 
-/// Edges that are or may become feature edges, by the vertices they meet at.
-struct Ridges<'a> {
-    welded: &'a Welded,
-    edges: &'a Edges,
-    /// Vertex and edge, sorted.
-    at_vertex: Vec<(u32, u32)>,
-}
-
-impl<'a> Ridges<'a> {
-    fn new(welded: &'a Welded, edges: &'a Edges, is_ridge: impl Fn(usize) -> bool) -> Self {
-        let ridges = (0..edges.edges.len()).filter(|&index| is_ridge(index));
-        let mut at_vertex: Vec<(u32, u32)> =
-            ridges.flat_map(|index| edges.edges[index].ends.map(|end| (end, index as u32))).collect();
-        at_vertex.sort_unstable();
-        Self { welded, edges, at_vertex }
-    }
-
-    /// The ridges that meet at a vertex.
-    fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
-        let from = self.at_vertex.partition_point(|entry| entry.0 < vertex);
-        self.at_vertex[from..].iter().take_while(move |entry| entry.0 == vertex).map(|entry| entry.1)
-    }
-
-    /// The other end of a ridge.
-    fn beyond(&self, index: u32, vertex: u32) -> u32 {
-        let [a, b] = self.edges.edges[index as usize].ends;
-        if a == vertex { b } else { a }
-    }
-
-    /// The direction in which a ridge leaves a vertex.
-    fn away(&self, index: u32, vertex: u32) -> DVec3 {
-        let [from, to] = self.welded.places([vertex, self.beyond(index, vertex)]);
-        (to - from).normalize_or_zero()
-    }
-
-    /// The ridge that goes on beyond the end of another, as straight as there is.
-    fn onward(&self, edge: u32, vertex: u32) -> Option<u32> {
-        let back = self.away(edge, vertex);
-        let others = self.around(vertex).filter(|&index| index != edge);
-        let straight = others.map(|index| (self.away(index, vertex).dot(-back), index));
-        let straight = straight.filter(|&(straight, _)| straight > STRAIGHT);
-        straight.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, index)| index)
-    }
-
-    /// The ridges that leave a corner, where two marked ones meet at an angle, as the only third:
-    /// three faces meet there, and two of them may do so at a lesser angle than they meet the third.
-    fn thirds(&self, marked: &[bool]) -> Vec<(u32, u32)> {
-        let mut vertices: Vec<u32> = self.at_vertex.iter().map(|entry| entry.0).collect();
-        vertices.dedup();
-        let third = |vertex: u32| {
-            let (lines, others): (Vec<u32>, Vec<u32>) =
-                self.around(vertex).partition(|&index| marked[index as usize]);
-            let (&[a, b], &[third]) = (lines.as_slice(), others.as_slice()) else { return None };
-            let corner = self.away(a, vertex).dot(self.away(b, vertex)) >= -STRAIGHT;
-            corner.then_some((third, vertex))
-        };
-        vertices.into_iter().filter_map(third).collect()
-    }
+/// The edge that leaves a corner, where two marked ones meet at an angle, as the only third:
+/// three faces meet there, and two of them may do so at a lesser angle than they meet the third.
+fn third(paths: &EdgePaths, marked: &[bool], vertex: u32) -> Option<u32> {
+    let (lines, others): (Vec<u32>, Vec<u32>) =
+        paths.around(vertex).iter().partition(|&&index| marked[index as usize]);
+    let (&[a, b], &[third]) = (lines.as_slice(), others.as_slice()) else { return None };
+    let corner = paths.away(a, vertex).dot(paths.away(b, vertex)) >= -STRAIGHT;
+    corner.then_some(third)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
 
     /// Steps from the middle to a side.
     const HALF: i32 = 4;

@@ -4,24 +4,24 @@
 //! the end, too: else the walk over the surface comes around the end to the other side. So the
 //! surface is cut a little farther, where nothing is to be seen of it.
 
-use glam::DVec3;
-
+use super::edge_paths::EdgePaths;
 use super::edges::Edges;
 use super::weld::Welded;
 
-/// Lines are carried on by this many error bounds: a splat that ends there covers more than it costs.
+/// Lines are carried on by this many error bounds, since a splat beside the end must end where the
+/// cut does. With 4 the teapot's file is 12 % larger; with 32 and 64 files are within 2 %, mostly larger.
 const CARRIED: f64 = 16.0;
 
-/// And by this many edges at most.
+/// And by this many edges at most, so that a coarse bound carries no line across a dense mesh.
 const MOST: usize = 8;
-
-/// They go on only along edges that bend from them by less than this (cosine of 45°).
-const STRAIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The edges, ascending, along which lines go on beyond their ends inside the surface.
 #[must_use]
 pub fn carried(welded: &Welded, edges: &Edges, marked: &[bool], max_error: f64) -> Vec<u32> {
-    let ends = Ends::new(welded, edges, marked);
+    if !marked.contains(&true) {
+        return Vec::new();
+    }
+    let ends = Ends { paths: EdgePaths::new(welded, edges, |_| true), edges, marked };
     let mut carried: Vec<u32> =
         ends.loose().flat_map(|(edge, end)| ends.path(edge, end, max_error)).collect();
     carried.sort_unstable();
@@ -29,71 +29,44 @@ pub fn carried(welded: &Welded, edges: &Edges, marked: &[bool], max_error: f64) 
     carried
 }
 
-/// The edges of a mesh by the vertices they meet at.
+/// The ends of the lines along a mesh's edges.
 struct Ends<'a> {
-    welded: &'a Welded,
+    paths: EdgePaths<'a>,
     edges: &'a Edges,
     marked: &'a [bool],
-    /// Vertex and edge, sorted.
-    at_vertex: Vec<(u32, u32)>,
 }
 
-impl<'a> Ends<'a> {
-    fn new(welded: &'a Welded, edges: &'a Edges, marked: &'a [bool]) -> Self {
-        let ends = edges.edges.iter().zip(0_u32..);
-        let mut at_vertex: Vec<(u32, u32)> =
-            ends.flat_map(|(edge, index)| edge.ends.map(|end| (end, index))).collect();
-        at_vertex.sort_unstable();
-        Self { welded, edges, marked, at_vertex }
-    }
-
-    fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
-        let from = self.at_vertex.partition_point(|entry| entry.0 < vertex);
-        self.at_vertex[from..].iter().take_while(move |entry| entry.0 == vertex).map(|entry| entry.1)
-    }
-
+impl Ends<'_> {
     /// Whether an edge bounds the surface, as a feature edge or because it ends there.
     fn bounds(&self, index: u32) -> bool {
         self.marked[index as usize] || self.edges.pair(&self.edges.edges[index as usize]).is_none()
+    }
+
+    /// How many edges that bound the surface meet at a vertex.
+    fn borders(&self, vertex: u32) -> usize {
+        self.paths.around(vertex).iter().filter(|&&index| self.bounds(index)).count()
     }
 
     /// Marked edges with an end where nothing else bounds the surface.
     fn loose(&self) -> impl Iterator<Item = (u32, u32)> {
         let marked = self.edges.edges.iter().zip(0_u32..).filter(|&(_, index)| self.marked[index as usize]);
         let ends = marked.flat_map(|(edge, index)| edge.ends.map(|end| (index, end)));
-        ends.filter(|&(_, end)| self.around(end).filter(|&index| self.bounds(index)).count() == 1)
+        ends.filter(|&(_, end)| self.borders(end) == 1)
     }
 
     /// The edges that go on from an end, as straight as there are, until they meet a border.
-    fn path(&self, edge: u32, end: u32, max_error: f64) -> Vec<u32> {
-        let (mut path, mut edge, mut end, mut length) = (Vec::new(), edge, end, 0.0);
+    fn path(&self, mut edge: u32, mut end: u32, max_error: f64) -> Vec<u32> {
+        let (mut path, mut length) = (Vec::new(), 0.0);
         while path.len() < MOST && length < CARRIED * max_error {
-            let back = self.leaving(edge, end).normalize_or_zero();
-            let others = self.around(end).filter(|&index| index != edge);
-            let straight =
-                others.map(|index| (self.leaving(index, end).normalize_or_zero().dot(-back), index));
-            let best = straight.filter(|&(straight, _)| straight > STRAIGHT);
-            let Some((_, next)) = best.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))) else { break };
-            length += self.leaving(next, end).length();
+            let Some(next) = self.paths.onward(edge, end) else { break };
+            length += self.paths.length(next);
             path.push(next);
-            (edge, end) = (next, self.beyond(next, end));
-            if self.around(end).any(|index| self.bounds(index)) {
+            (edge, end) = (next, self.paths.beyond(next, end));
+            if self.borders(end) > 0 {
                 break;
             }
         }
         path
-    }
-
-    /// The other end of an edge.
-    fn beyond(&self, index: u32, vertex: u32) -> u32 {
-        let [a, b] = self.edges.edges[index as usize].ends;
-        if a == vertex { b } else { a }
-    }
-
-    /// An edge as it leaves a vertex.
-    fn leaving(&self, index: u32, vertex: u32) -> DVec3 {
-        let [from, to] = self.welded.places([vertex, self.beyond(index, vertex)]);
-        to - from
     }
 }
 

@@ -13,6 +13,7 @@ pub mod cloud_surface;
 pub mod creases;
 mod curved;
 pub mod distinct;
+mod edge_paths;
 pub mod edges;
 pub mod given_lines;
 pub mod line_cut;
