@@ -130,7 +130,14 @@ pub fn bake(
     let round = |splat: &Splat| rounding(splat, max_error);
     let budget = Budget::new(max_error, options.clips);
     let open = if options.clips == Clips::Partners { open_sides(&surface) } else { Vec::new() };
-    let grower = Grower { surface: &surface, budget, shapes: options.shapes, open, round: &round };
+    let grower = Grower {
+        surface: &surface,
+        budget,
+        shapes: options.shapes,
+        open: &open,
+        overhang: 0.0,
+        round: &round,
+    };
     let regions = Regions::new(surface.points.len());
     let total = surface.pieces.len() as u64;
     let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));

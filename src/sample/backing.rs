@@ -5,6 +5,9 @@
 //! would stand out into the air.
 
 use glam::{DVec2, DVec3};
+use parry3d_f64::math::Vector;
+use parry3d_f64::query::PointQuery;
+use parry3d_f64::shape::Triangle;
 
 use super::grow::Grower;
 use super::region::Region;
@@ -57,27 +60,36 @@ pub fn backed(
     // Curves pass somewhat outside their lines: just inside a curve there is no surface.
     let beside_cut = |uv: DVec2| directions(AROUND).any(|direction| cut(uv + reach * direction));
     let below = match (grower.surface.spots.is_empty(), look) {
-        (true, _) => Below::triangles(grower.surface, pose, region),
+        (true, _) => Below::triangles(grower.surface, pose, region.rim.iter().map(|&(_, outside)| outside)),
         (false, Look::Coarse) => Below::points(grower.surface, pose, region),
         (false, Look::Fine) => Below::spots(grower, pose, outer, curvature, region),
     };
-    let perimeter = std::f64::consts::PI * outer.element_sum();
-    let count = (perimeter / (APART * grower.budget.rim)).clamp(PLACES.0, PLACES.1) as usize;
     if !below.points.is_empty() {
         let near = below.near_rim(outer, grower.budget.pad);
         let places = directions(near.len()).map(|direction| direction * outer).zip(near);
         return places.filter(|&(uv, near)| !near && !cut(uv)).all(|(uv, _)| beside_cut(uv));
     }
-    let places = directions(count).map(|direction| direction * outer).chain(between_cuts(clips, outer));
+    let places = rim_places(outer, grower.budget.rim).chain(between_cuts(clips, outer));
     places.filter(|&uv| !cut(uv)).all(|uv| {
         let height = (curvature * uv * uv).element_sum();
-        below.near(uv, height, grower.budget.rim) || beside_cut(uv)
+        below.near(uv, height, grower.budget.rim, grower.overhang) || beside_cut(uv)
     })
+}
+
+/// Places around an ellipse, close enough together that by its rim budget little stands out between.
+pub(super) fn rim_places(radii: DVec2, budget: f64) -> impl Iterator<Item = DVec2> {
+    let perimeter = std::f64::consts::PI * radii.element_sum();
+    directions(place_count(perimeter, budget)).map(move |direction| direction * radii)
+}
+
+/// How many places to look at along a border of some length.
+pub(super) fn place_count(length: f64, budget: f64) -> usize {
+    (length / (APART * budget)).clamp(PLACES.0, PLACES.1) as usize
 }
 
 /// The middles of the border's arcs between the ends of clip curves, so that no arc that is
 /// kept goes unseen.
-fn between_cuts(clips: &[ClipCurve], radii: DVec2) -> impl Iterator<Item = DVec2> {
+pub(super) fn between_cuts(clips: &[ClipCurve], radii: DVec2) -> impl Iterator<Item = DVec2> {
     let mut ends: Vec<f64> = clips.iter().flat_map(|clip| [clip.alpha1, clip.alpha3]).collect();
     ends.sort_unstable_by(f64::total_cmp);
     let wrapped = ends.first().map(|first| first + std::f64::consts::TAU);
@@ -95,18 +107,17 @@ fn directions(count: usize) -> impl Iterator<Item = DVec2> {
 
 /// The surface around a region's rim, in splat coordinates.
 #[derive(Default)]
-struct Below {
+pub(super) struct Below {
     triangles: Vec<[DVec3; 3]>,
     /// Single points and how far from each the surface goes on.
     points: Vec<(DVec2, f64)>,
 }
 
 impl Below {
-    /// The triangles of a mesh.
-    fn triangles(surface: &Surface, pose: &Pose, region: &Region) -> Self {
-        let outside = region.rim.iter().map(|&(_, outside)| outside);
+    /// The triangles of a mesh at some points.
+    pub(super) fn triangles(surface: &Surface, pose: &Pose, points: impl Iterator<Item = u32>) -> Self {
         let mut pieces: Vec<u32> =
-            outside.flat_map(|point| surface.pieces_of.row(point).iter().copied()).collect();
+            points.flat_map(|point| surface.pieces_of.row(point).iter().copied()).collect();
         pieces.sort_unstable();
         pieces.dedup();
         let corners = pieces.iter().map(|&piece| surface.pieces[piece as usize]);
@@ -141,11 +152,13 @@ impl Below {
         Self { points: spots.collect(), ..Self::default() }
     }
 
-    /// Whether a triangle lies within `budget` of a height over a place.
-    fn near(&self, uv: DVec2, height: f64, budget: f64) -> bool {
-        self.triangles.iter().any(|triangle| {
-            height_over(triangle, uv).is_some_and(|surface| (surface - height).abs() <= budget)
-        })
+    /// Whether a triangle lies within `rim` of a height over a place, or within `overhang` beside it.
+    pub(super) fn near(&self, uv: DVec2, height: f64, rim: f64, overhang: f64) -> bool {
+        let over = |triangle: &[DVec3; 3]| {
+            height_over(triangle, uv).is_some_and(|surface| (surface - height).abs() <= rim)
+        };
+        let beside = |triangle: &[DVec3; 3]| distance(triangle, uv.extend(height)) <= overhang;
+        self.triangles.iter().any(over) || (overhang > 0.0 && self.triangles.iter().any(beside))
     }
 }
 
@@ -197,6 +210,13 @@ fn beside(flat: DVec2, long_u: bool) -> [f64; 3] {
         let side = libm::asin(flat.y.clamp(-1.0, 1.0));
         [outward, side, std::f64::consts::PI - side]
     }
+}
+
+/// Distance of a place from a triangle.
+fn distance(triangle: &[DVec3; 3], place: DVec3) -> f64 {
+    let vector = |p: DVec3| Vector::new(p.x, p.y, p.z);
+    let [a, b, c] = triangle.map(vector);
+    Triangle::new(a, b, c).distance_to_local_point(vector(place), true)
 }
 
 /// The height of a triangle over a place, if it lies over it.

@@ -18,11 +18,18 @@ pub struct Budget {
     /// of a quadric grows with the third power of the distance, so this is worth a quarter of
     /// the radius.
     pub rim: f64,
+    /// How far, in space, a rim may stand out where the surface folds away below it, if that is what
+    /// it takes to do without a last resort.
+    pub overhang: f64,
     /// How far a large domain goes on beyond what it is trusted to cover: see [`Self::padded`].
     pub pad: f64,
     /// For clip curves.
     pub clip: ClipTolerance,
 }
+
+/// Share of the bound by which a rim may stand out beside the surface: the lip of a teapot is as narrow
+/// as one percent. Half of it is about what cut borders stand out by.
+const OVERHANG_SHARE: f64 = 0.5;
 
 /// Share of the bound that domains are padded by.
 const PAD_SHARE: f64 = 0.75;
@@ -38,6 +45,7 @@ impl Budget {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
             rim: 2.0 * FIT_SHARE * max_error,
+            overhang: OVERHANG_SHARE * max_error,
             pad: PAD_SHARE * max_error,
             clip: ClipTolerance {
                 outset: CLIP_OUTSET_SHARE * max_error,

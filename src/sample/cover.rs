@@ -11,6 +11,7 @@ use super::gain::Gain;
 use super::grow::Grower;
 use super::moves::improve;
 use super::polygon;
+use super::region::Region;
 use super::settle::Candidate;
 use crate::model::splat::{Kind, Splat};
 use rayon::prelude::*;
@@ -200,14 +201,17 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
             }
             at += 1;
         }
+        let grow = |piece: u32, region: &mut Region| {
+            grower.grow(piece, region).or_else(|| grower.grow_overhanging(piece, region))
+        };
         let grown: Vec<Option<Candidate>> =
-            batch.par_iter().map(|&piece| regions.with(|region| grower.grow(piece, region))).collect();
+            batch.par_iter().map(|&piece| regions.with(|region| grow(piece, region))).collect();
         for (&piece, grown) in batch.iter().zip(grown) {
             if cover.times[piece as usize] > 0 {
                 continue;
             }
             let last_resort = grown.is_none();
-            match grown.or_else(|| polygon::over(grower, piece)) {
+            match grown.or_else(|| regions.with(|region| polygon::over(grower, piece, region))) {
                 Some(candidate) => {
                     choice.last_resorts += usize::from(last_resort);
                     cover.choose(candidate);

@@ -97,7 +97,9 @@ pub struct Grower<'a> {
     pub shapes: Shapes,
     /// Where nothing lies across a border ([`super::outline::open_sides`]), for splats that
     /// partners cut; else empty.
-    pub open: Vec<bool>,
+    pub open: &'a [bool],
+    /// How far a rim may stand out beside a mesh: 0, or [`Budget::overhang`].
+    pub overhang: f64,
     /// Splats are rounded before they are judged and cut, so that storing them changes
     /// nothing that was judged.
     pub round: &'a Round<'a>,
@@ -127,6 +129,12 @@ impl Grower<'_> {
             let best = self.enlarged(least, &seeds, region);
             settle(self, best, &seeds, piece, region)
         })
+    }
+
+    /// The same for a piece that this fails for: rims may stand out a little where the surface folds
+    /// away.
+    pub fn grow_overhanging(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
+        Self { overhang: self.budget.overhang, ..*self }.grow(piece, region)
     }
 
     /// A domain grown as long as it keeps the budget and reaches more of the surface.
@@ -310,7 +318,7 @@ impl Grower<'_> {
         if holds_an_end(self.surface, region, pose, outer, self.budget.clip.outset) {
             return Err(Stop::Stray);
         }
-        let outlines = outlines(self.surface, region, pose, &self.open);
+        let outlines = outlines(self.surface, region, pose, self.open);
         let mut clips = Vec::new();
         for Outline { points, closed, .. } in &outlines {
             clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, care).ok_or(Stop::Clip)?);
@@ -344,7 +352,7 @@ impl Grower<'_> {
         let mut clips = Vec::new();
         if self.budget.clip.clips == Clips::Partners {
             for Outline { points, closed, .. } in
-                outlines(self.surface, region, pose, &self.open).iter().filter(|outline| outline.ends)
+                outlines(self.surface, region, pose, self.open).iter().filter(|outline| outline.ends)
             {
                 clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, Care::Nearest)?);
             }

@@ -104,7 +104,8 @@ pub fn outlines(surface: &Surface, region: &Region, pose: &Pose, open: &[bool]) 
 }
 
 /// The sides of all borders with an end among the members or the rim, sorted.
-fn border_sides(surface: &Surface, region: &Region) -> Vec<Side> {
+#[must_use]
+pub fn border_sides(surface: &Surface, region: &Region) -> Vec<Side> {
     let near = region
         .members
         .iter()
