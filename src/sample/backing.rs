@@ -238,4 +238,13 @@ mod tests {
         assert_eq!(height_over(&triangle, DVec2::new(0.5, 0.5)), Some(1.5));
         assert_eq!(height_over(&triangle, DVec2::new(1.5, 1.5)), None);
     }
+
+    #[test]
+    fn a_rim_stands_out_beside_a_triangle_by_no_more_than_it_may() {
+        let triangles = vec![[DVec3::ZERO, DVec3::NEG_X, DVec3::NEG_Y]];
+        let below = Below { triangles, ..Below::default() };
+        let near = |u: f64, height: f64, overhang: f64| below.near(DVec2::new(u, 0.0), height, 0.2, overhang);
+        assert!(near(-0.1, 0.2, 0.0) && !near(-0.1, 0.3, 0.0), "over it the rim's budget counts");
+        assert!(!near(0.3, 0.0, 0.0) && near(0.3, 0.39, 0.5) && !near(0.3, 0.41, 0.5), "beside it, space");
+    }
 }

@@ -27,8 +27,8 @@ pub struct Budget {
     pub clip: ClipTolerance,
 }
 
-/// Share of the bound by which a rim may stand out beside the surface: the lip of a teapot is as narrow
-/// as one percent. Half of it is about what cut borders stand out by.
+/// Share of the bound by which a rim may stand out beside the surface, as cut borders do: where that is
+/// as narrow as the bound, as the lip of a teapot is at one percent, no ellipse has it all below.
 const OVERHANG_SHARE: f64 = 0.5;
 
 /// Share of the bound that domains are padded by.
