@@ -9,7 +9,7 @@ use super::edges::Edges;
 use super::weld::Welded;
 
 /// Lines are carried on by this many error bounds, since a splat beside the end must end where the
-/// cut does. With 4 the teapot's file is 12 % larger; with 32 and 64 files are within 2 %, mostly larger.
+/// cut does. With 4 the teapot's file is 12 % larger; with 32 and 64 files are within 3 %, mostly larger.
 const CARRIED: f64 = 16.0;
 
 /// And by this many edges at most, so that a coarse bound carries no line across a dense mesh.

@@ -26,6 +26,15 @@ pub struct ClipTolerance {
     pub clips: Clips,
 }
 
+impl ClipTolerance {
+    /// How far outside its line a curve may lie before it is rounded, with one miss to spare: where the
+    /// surface is looked for just inside a curve, none need be.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.outset + 2.0 * self.miss
+    }
+}
+
 /// Which clip curves a splat may have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clips {
@@ -250,7 +259,7 @@ pub fn bounds_only(
     radii: DVec2,
     tolerance: &ClipTolerance,
 ) -> bool {
-    let apart = tolerance.outset + 2.0 * tolerance.miss;
+    let apart = tolerance.reach();
     conics.iter().enumerate().all(|(index, conic)| {
         let length = conic.p1.distance(conic.p2) + conic.p2.distance(conic.p3);
         let length = if conic.rho == 0.0 { conic.p1.distance(conic.p3) } else { length };

@@ -8,3 +8,4 @@ pub mod mesh;
 pub mod partner;
 pub mod polyline;
 pub mod splat;
+pub mod triangle;

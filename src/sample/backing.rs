@@ -5,15 +5,13 @@
 //! would stand out into the air.
 
 use glam::{DVec2, DVec3};
-use parry3d_f64::math::Vector;
-use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::Triangle;
 
 use super::grow::Grower;
 use super::region::Region;
 use crate::analyse::surface::Surface;
 use crate::fit::pose::{Pose, miss};
 use crate::model::clip_curve::{ClipCurve, Conic, border_point, turn};
+use crate::model::triangle::to_triangle;
 
 /// Fewest and most places looked at around the rim.
 const PLACES: (f64, f64) = (16.0, 192.0);
@@ -56,7 +54,7 @@ pub fn backed(
 ) -> bool {
     let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(outer)).collect();
     let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
-    let reach = grower.budget.clip.outset + 2.0 * grower.budget.clip.miss;
+    let reach = grower.budget.clip.reach();
     // Curves pass somewhat outside their lines: just inside a curve there is no surface.
     let beside_cut = |uv: DVec2| directions(AROUND).any(|direction| cut(uv + reach * direction));
     let below = match (grower.surface.spots.is_empty(), look) {
@@ -157,7 +155,7 @@ impl Below {
         let over = |triangle: &[DVec3; 3]| {
             height_over(triangle, uv).is_some_and(|surface| (surface - height).abs() <= rim)
         };
-        let beside = |triangle: &[DVec3; 3]| distance(triangle, uv.extend(height)) <= overhang;
+        let beside = |triangle: &[DVec3; 3]| to_triangle(*triangle, uv.extend(height)).length() <= overhang;
         self.triangles.iter().any(over) || (overhang > 0.0 && self.triangles.iter().any(beside))
     }
 }
@@ -210,13 +208,6 @@ fn beside(flat: DVec2, long_u: bool) -> [f64; 3] {
         let side = libm::asin(flat.y.clamp(-1.0, 1.0));
         [outward, side, std::f64::consts::PI - side]
     }
-}
-
-/// Distance of a place from a triangle.
-fn distance(triangle: &[DVec3; 3], place: DVec3) -> f64 {
-    let vector = |p: DVec3| Vector::new(p.x, p.y, p.z);
-    let [a, b, c] = triangle.map(vector);
-    Triangle::new(a, b, c).distance_to_local_point(vector(place), true)
 }
 
 /// The height of a triangle over a place, if it lies over it.

@@ -201,8 +201,10 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
             }
             at += 1;
         }
+        let meshed = grower.surface.spots.is_empty();
         let grow = |piece: u32, region: &mut Region| {
-            grower.grow(piece, region).or_else(|| grower.grow_overhanging(piece, region))
+            let grown = grower.grow(piece, region);
+            if meshed { grown.or_else(|| grower.grow_overhanging(piece, region)) } else { grown }
         };
         let grown: Vec<Option<Candidate>> =
             batch.par_iter().map(|&piece| regions.with(|region| grow(piece, region))).collect();

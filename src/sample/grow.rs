@@ -332,7 +332,7 @@ impl Grower<'_> {
             |line: &Outline| clip::follows(&line.points, line.closed, outer, cuts, &self.budget.clip);
         let tolerance = &self.budget.clip;
         let reach = match care {
-            Care::Feasible => tolerance.outset + 2.0 * tolerance.miss,
+            Care::Feasible => tolerance.reach(),
             Care::Nearest => tolerance.edge,
         };
         let along = |uv: DVec2| {

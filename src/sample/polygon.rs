@@ -122,7 +122,7 @@ impl Triangle<'_> {
         is_cut: impl Fn(DVec2) -> bool,
     ) -> bool {
         let budget = &self.grower.budget;
-        let reach = budget.clip.outset + 2.0 * budget.clip.miss;
+        let reach = budget.clip.reach();
         let below = Below::triangles(self.grower.surface, &self.pose, region.reached());
         let beside_cut = |uv: DVec2| {
             (0..3).filter(|side| cut >> side & 1 == 1).any(|side| {
