@@ -32,16 +32,17 @@ type Parameters = SVector<f64, 3>;
 /// Points at equal shares of a polyline's arc length, its ends left out.
 #[must_use]
 pub fn equally_spaced(line: &[DVec2], count: usize) -> Vec<DVec2> {
-    let total: f64 = line.windows(2).map(|side| side[0].distance(side[1])).sum();
+    let sides: Vec<f64> = line.windows(2).map(|side| side[0].distance(side[1])).collect();
+    let total: f64 = sides.iter().sum();
     let mut out = Vec::with_capacity(count);
     let (mut at, mut walked) = (0, 0.0);
     for n in 1..=count {
         let target = total * n as f64 / (count + 1) as f64;
-        while at + 2 < line.len() && walked + line[at].distance(line[at + 1]) < target {
-            walked += line[at].distance(line[at + 1]);
+        while at + 1 < sides.len() && walked + sides[at] < target {
+            walked += sides[at];
             at += 1;
         }
-        let side = line[at].distance(line[at + 1]);
+        let side = sides[at];
         let share = if side > 0.0 { ((target - walked) / side).clamp(0.0, 1.0) } else { 0.0 };
         out.push(line[at].lerp(line[at + 1], share));
     }

@@ -6,6 +6,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::budget::Budget;
 use super::grow::Grower;
 use super::region::Region;
 use crate::analyse::surface::Surface;
@@ -70,7 +71,7 @@ pub fn backed(
     let places = rim_places(outer, grower.budget.rim).chain(between_cuts(clips, outer));
     places.filter(|&uv| !cut(uv)).all(|uv| {
         let height = (curvature * uv * uv).element_sum();
-        below.near(uv, height, grower.budget.rim, grower.overhang) || beside_cut(uv)
+        below.near(uv, height, &grower.budget, grower.overhang) || beside_cut(uv)
     })
 }
 
@@ -150,10 +151,11 @@ impl Below {
         Self { points: spots.collect(), ..Self::default() }
     }
 
-    /// Whether a triangle lies within `rim` of a height over a place, or within `overhang` beside it.
-    pub(super) fn near(&self, uv: DVec2, height: f64, rim: f64, overhang: f64) -> bool {
+    /// Whether a triangle lies within the budget for rims of a height over a place, or within
+    /// `overhang` beside it.
+    pub(super) fn near(&self, uv: DVec2, height: f64, budget: &Budget, overhang: f64) -> bool {
         let over = |triangle: &[DVec3; 3]| {
-            height_over(triangle, uv).is_some_and(|surface| (surface - height).abs() <= rim)
+            height_over(triangle, uv).is_some_and(|surface| budget.reaches(surface - height, 1.0))
         };
         let beside = |triangle: &[DVec3; 3]| to_triangle(*triangle, uv.extend(height)).length() <= overhang;
         self.triangles.iter().any(over) || (overhang > 0.0 && self.triangles.iter().any(beside))
@@ -222,6 +224,7 @@ fn height_over(triangle: &[DVec3; 3], uv: DVec2) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::clip::Clips;
 
     #[test]
     fn heights_are_those_of_the_triangle() {
@@ -234,8 +237,11 @@ mod tests {
     fn a_rim_stands_out_beside_a_triangle_by_no_more_than_it_may() {
         let triangles = vec![[DVec3::ZERO, DVec3::NEG_X, DVec3::NEG_Y]];
         let below = Below { triangles, ..Below::default() };
-        let near = |u: f64, height: f64, overhang: f64| below.near(DVec2::new(u, 0.0), height, 0.2, overhang);
+        let budget = Budget { rim: 0.4, proud: 0.2, ..Budget::new(0.1, Clips::Curved) };
+        let near =
+            |u: f64, height: f64, overhang: f64| below.near(DVec2::new(u, 0.0), height, &budget, overhang);
         assert!(near(-0.1, 0.2, 0.0) && !near(-0.1, 0.3, 0.0), "over it the rim's budget counts");
+        assert!(near(-0.1, -0.3, 0.0) && !near(-0.1, -0.5, 0.0), "it may sink by more");
         assert!(!near(0.3, 0.0, 0.0) && near(0.3, 0.39, 0.5) && !near(0.3, 0.41, 0.5), "beside it, space");
     }
 }

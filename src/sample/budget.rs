@@ -13,11 +13,13 @@ pub struct Budget {
     /// The same for a point on a feature line: two surfaces meet there, each cut somewhat
     /// outside the line, and the nearer both pass the line the less remains of a slit.
     pub line: f64,
-    /// Between the quadric and the surface that it reaches over but need not cover, because
+    /// How far a quadric may sink below the surface that it reaches over but need not cover, because
     /// another splat does: twice the budget (of which quantising takes its share). The error
     /// of a quadric grows with the third power of the distance, so this is worth a quarter of
     /// the radius.
     pub rim: f64,
+    /// How far it may stand above such a surface: see [`PROUD`].
+    pub proud: f64,
     /// How far, in space, a rim may stand out where the surface folds away below it, if that is what
     /// it takes to do without a last resort.
     pub overhang: f64,
@@ -30,6 +32,12 @@ pub struct Budget {
 /// Share of the bound by which a rim may stand out beside the surface, as cut borders do: where that is
 /// as narrow as the bound, as the lip of a teapot is at one percent, no ellipse has it all below.
 const OVERHANG_SHARE: f64 = 0.5;
+
+/// Bounds by which a rim may stand above the surface. A rim that sinks lies hidden below the splat that
+/// covers there; one that stands out is seen, at silhouettes most of all. At 2, as for rims that sink, a
+/// few pixels stand out on most models at a tenth of a percent; at 1.2 to 1.4 files are the smallest for
+/// their backward rms.
+const PROUD: f64 = 1.4;
 
 /// Share of the bound that domains are padded by.
 const PAD_SHARE: f64 = 0.75;
@@ -45,6 +53,7 @@ impl Budget {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
             rim: 2.0 * FIT_SHARE * max_error,
+            proud: PROUD * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,
             pad: PAD_SHARE * max_error,
             clip: ClipTolerance {
@@ -54,6 +63,13 @@ impl Budget {
                 clips,
             },
         }
+    }
+
+    /// Whether a quadric may reach over a place that lies so far above it. `slack` multiplies the
+    /// distances allowed.
+    #[must_use]
+    pub fn reaches(&self, above: f64, slack: f64) -> bool {
+        (-slack * self.proud..=slack * self.rim).contains(&above)
     }
 
     /// The radii of a splat that is trusted to cover an ellipse. It goes on a little beyond,

@@ -1,23 +1,23 @@
-//! How far a flat facet lies from a quadric, between its corners too.
+//! How far a flat facet lies above and below a quadric, between its corners too.
 
 use glam::{DVec2, DVec3};
 
 use crate::fit::ellipse::crossings;
 use crate::fit::pose::above;
 
-/// The largest distance, along `k`, between a quadric and the part of a facet that its edges
-/// and inside show within an ellipse; 0 where none of it lies there.
+/// The lowest and the highest that a facet lies over a quadric, along `k`, as far as its edges and its
+/// inside show within an ellipse. 0 counts among them, also where none of it lies there.
 ///
-/// Over a facet the distance is `Σ λᵢ dᵢ + Σ λᵢ λⱼ q(pᵢ - pⱼ)`, of the corners' distances `dᵢ`
-/// and the quadric's form `q`: greatest at a corner, on an edge where its slope is zero, or, for
+/// Over a facet the height is `Σ λᵢ dᵢ + Σ λᵢ λⱼ q(pᵢ - pⱼ)`, of the corners' distances `dᵢ`
+/// and the quadric's form `q`: extreme at a corner, on an edge where its slope is zero, or, for
 /// an elliptic form, at one place inside. Of a facet that the ellipse's rim passes through, the
 /// edges are looked at as far as they lie in the ellipse.
 #[must_use]
-pub fn farthest(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2) -> f64 {
+pub fn extremes(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2) -> [f64; 2] {
     let edges = [[0, 1], [1, 2], [2, 0]].map(|[a, b]| along(facet[a], facet[b], curvature, radii));
     let whole = facet.iter().all(|corner| (corner.truncate() / radii).length_squared() <= 1.0);
     let within = if whole { inside(facet, curvature) } else { 0.0 };
-    edges.into_iter().fold(within, f64::max)
+    edges.into_iter().fold([within.min(0.0), within.max(0.0)], both)
 }
 
 /// `q`, the height of the quadric over a place.
@@ -25,23 +25,28 @@ fn form(curvature: DVec2, uv: DVec2) -> f64 {
     (curvature * uv * uv).element_sum()
 }
 
-/// The largest distance on an edge, as far as it lies in the ellipse.
-fn along(a: DVec3, b: DVec3, curvature: DVec2, radii: DVec2) -> f64 {
-    let Some((enter, leave)) = crossings(a.truncate(), b.truncate(), radii) else { return 0.0 };
+/// The lower and the higher of two pairs.
+fn both(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// The extremes on an edge, as far as it lies in the ellipse.
+fn along(a: DVec3, b: DVec3, curvature: DVec2, radii: DVec2) -> [f64; 2] {
+    let Some((enter, leave)) = crossings(a.truncate(), b.truncate(), radii) else { return [0.0; 2] };
     let (first, last) = (enter.max(0.0), leave.min(1.0));
     if first > last {
-        return 0.0;
+        return [0.0; 2];
     }
     let (from, to) = (above(curvature, a), above(curvature, b));
     let bend = form(curvature, (b - a).truncate());
-    let at = |t: f64| (from + t * (to - from) + t * (1.0 - t) * bend).abs();
+    let at = |t: f64| from + t * (to - from) + t * (1.0 - t) * bend;
     let level = 0.5 + 0.5 * (to - from) / bend;
     // Without a bend the level place is infinite or no number, and lies on no edge.
     let middle = if level > first && level < last { at(level) } else { 0.0 };
-    at(first).max(at(last)).max(middle)
+    [at(first), at(last), middle].into_iter().fold([0.0; 2], |found, one| both(found, [one; 2]))
 }
 
-/// The distance at the place inside a facet where it changes in no direction; 0 if there is none.
+/// The height at the place inside a facet where it changes in no direction; 0 if there is none.
 fn inside(facet: &[DVec3; 3], curvature: DVec2) -> f64 {
     let origin = above(curvature, facet[0]);
     let [p, q] = [facet[1] - facet[0], facet[2] - facet[0]];
@@ -56,7 +61,7 @@ fn inside(facet: &[DVec3; 3], curvature: DVec2) -> f64 {
         return 0.0;
     }
     let DVec2 { x: s, y: t } = place;
-    (origin + slope.dot(place) + s * pp + t * qq - (s * s * pp + 2.0 * s * t * pq + t * t * qq)).abs()
+    origin + slope.dot(place) + s * pp + t * qq - (s * s * pp + 2.0 * s * t * pq + t * t * qq)
 }
 
 #[cfg(test)]
@@ -70,10 +75,10 @@ mod tests {
         bits as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// The largest distance over places of a facet inside an ellipse, `edges` alone or all.
-    fn brute(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2, edges: bool) -> f64 {
+    /// The extremes over places of a facet inside an ellipse, `edges` alone or all.
+    fn brute(facet: &[DVec3; 3], curvature: DVec2, radii: DVec2, edges: bool) -> [f64; 2] {
         const STEPS: u32 = 60;
-        let mut most: f64 = 0.0;
+        let mut found = [0.0; 2];
         for i in 0..=STEPS {
             for j in 0..=STEPS - i {
                 if edges && i > 0 && j > 0 && i + j < STEPS {
@@ -82,15 +87,15 @@ mod tests {
                 let (s, t) = (f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
                 let place = facet[0] + s * (facet[1] - facet[0]) + t * (facet[2] - facet[0]);
                 if (place.truncate() / radii).length_squared() <= 1.0 {
-                    most = most.max(above(curvature, place).abs());
+                    found = both(found, [above(curvature, place); 2]);
                 }
             }
         }
-        most
+        found
     }
 
     #[test]
-    fn no_place_of_a_facet_is_farther() {
+    fn no_place_of_a_facet_is_lower_or_higher() {
         let (mut partial, mut bulging) = (0, 0);
         for seed in 0..4000 {
             let value = |k: u32| random(seed, k);
@@ -104,20 +109,23 @@ mod tests {
             }
             let radii = DVec2::new(1.0 + 0.6 * value(11), 1.0 + 0.6 * value(12));
             let whole = facet.iter().all(|p| (p.truncate() / radii).length_squared() <= 1.0);
-            let found = farthest(&facet, curvature, radii);
+            let found = extremes(&facet, curvature, radii);
             let brute = brute(&facet, curvature, radii, !whole);
-            assert!(found >= brute - 1e-12, "{found} {brute} {facet:?}");
             // The places looked at lie a sixtieth apart; those on the rim itself are between them.
-            assert!(found <= brute + if whole { 2e-3 } else { 0.2 }, "{found} {brute} {facet:?}");
+            let apart = if whole { 2e-3 } else { 0.2 };
+            for (found, brute) in [(-found[0], -brute[0]), (found[1], brute[1])] {
+                assert!((brute - 1e-12..=brute + apart).contains(&found), "{found} {brute} {facet:?}");
+            }
             partial += u32::from(!whole);
-            bulging += u32::from(whole && inside(&facet, curvature) >= found);
+            let level = inside(&facet, curvature);
+            bulging += u32::from(whole && level.abs() > 0.0 && found.contains(&level));
         }
         assert!(partial > 500 && bulging > 50, "{partial} {bulging}");
     }
 
     #[test]
-    fn over_a_plane_a_corner_is_farthest() {
-        let facet = [DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.5, 0.0, -0.3), DVec3::new(0.0, 0.5, 0.2)];
-        assert!((farthest(&facet, DVec2::ZERO, DVec2::ONE) - 0.3).abs() < 1e-15);
+    fn over_a_plane_corners_are_extreme() {
+        let facet = [DVec3::new(0.0, 0.0, 0.125), DVec3::new(0.5, 0.0, -0.375), DVec3::new(0.0, 0.5, 0.25)];
+        assert_eq!(extremes(&facet, DVec2::ZERO, DVec2::ONE), [-0.375, 0.25]);
     }
 }

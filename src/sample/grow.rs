@@ -4,6 +4,8 @@
 //! bound. Here it is an ellipse in the principal frame, first round, then longer along each
 //! axis while that holds, and it is cut where the walk over the surface meets a border.
 
+use std::cell::Cell;
+
 use glam::{DVec2, DVec3};
 
 use super::backing::{Look, backed};
@@ -14,7 +16,7 @@ use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care, Clips};
 use crate::fit::ellipse::{circumellipse, crossings};
-use crate::fit::pose::{Fitting, Pose, Principal, Shapes, miss, principal};
+use crate::fit::pose::{Fitting, Pose, Principal, Shapes, above, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -270,12 +272,15 @@ impl Grower<'_> {
         slack: f64,
         region: &Region,
     ) -> bool {
-        let limit =
-            |point: u32| if self.surface.on_border(point) { self.budget.line } else { self.budget.rim };
-        region.members.iter().all(|member| miss(curvature, member.local) <= slack * limit(member.point))
-            && self
-                .rim(pose, outer, region)
-                .all(|point| miss(curvature, pose.to_local(point)) <= slack * self.budget.rim)
+        let kept = |member: &Member| {
+            if self.surface.on_border(member.point) {
+                miss(curvature, member.local) <= slack * self.budget.line
+            } else {
+                self.reaches(curvature, member.local, slack)
+            }
+        };
+        region.members.iter().all(kept)
+            && self.rim(pose, outer, region).all(|point| self.reaches(curvature, pose.to_local(point), slack))
     }
 
     /// Whether a place is near enough to a quadric to be covered by it.
@@ -285,7 +290,7 @@ impl Grower<'_> {
 
     /// Whether a place is near enough to a quadric that it may reach over it.
     pub(super) fn reaches(&self, curvature: DVec2, local: DVec3, slack: f64) -> bool {
-        miss(curvature, local) <= slack * self.budget.rim
+        self.budget.reaches(above(curvature, local), slack)
     }
 
     /// Where the surface leaves the ellipse, as far as neighbours' joining lines tell.
@@ -335,9 +340,10 @@ impl Grower<'_> {
             Care::Feasible => tolerance.reach(),
             Care::Nearest => tolerance.edge,
         };
+        let last = vec![Cell::new(0); outlines.len()];
         let along = |uv: DVec2| {
             let place = uv.extend((curvature * uv * uv).element_sum());
-            outlines.iter().any(|line| line.near(place, reach))
+            outlines.iter().zip(&last).any(|(line, last)| line.near(place, reach, last))
         };
         if outlines.iter().all(followed) && clip::bounds_only(along, &conics, outer, tolerance) {
             Ok(clips)

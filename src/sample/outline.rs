@@ -1,5 +1,7 @@
 //! The borders and feature lines of a region, in the splat's plane.
 
+use std::cell::Cell;
+
 use glam::{DVec2, DVec3};
 
 use super::region::Region;
@@ -26,12 +28,20 @@ pub type Side = (u32, u32);
 
 impl Outline {
     /// Whether a place in splat coordinates lies within `reach` of the line, in space.
+    ///
+    /// The search begins at side `last` and goes on to both sides of it; there the side found is left,
+    /// for the next place of a curve to begin at.
     #[must_use]
-    pub fn near(&self, place: DVec3, reach: f64) -> bool {
+    pub fn near(&self, place: DVec3, reach: f64, last: &Cell<usize>) -> bool {
         let vertex =
             |n: usize| self.points[n % self.points.len()].extend(self.heights[n % self.points.len()]);
         let sides = self.points.len() - usize::from(!self.closed);
-        (0..sides).any(|n| nearest_on(vertex(n), vertex(n + 1), place).distance(place) <= reach)
+        let around = |n: usize| last.get() + if n % 2 == 0 { sides - n / 2 } else { n / 2 + 1 };
+        let is_near =
+            |side: &usize| nearest_on(vertex(*side), vertex(side + 1), place).distance(place) <= reach;
+        let found = (0..sides).map(|n| around(n) % sides).find(is_near);
+        last.set(found.unwrap_or(last.get()));
+        found.is_some()
     }
 }
 

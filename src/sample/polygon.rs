@@ -105,7 +105,7 @@ impl Triangle<'_> {
         let is_cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
         let kept = |uv: DVec2| (uv / self.radii).length_squared() < 1.0 && !is_cut(uv);
         let near = |member: &Member| {
-            !kept(member.local.truncate()) || member.local.z.abs() <= self.grower.budget.rim
+            !kept(member.local.truncate()) || self.grower.budget.reaches(member.local.z, 1.0)
         };
         region.members.iter().all(near)
             && !self.across(region).any(kept)
@@ -134,7 +134,7 @@ impl Triangle<'_> {
             .chain(between_cuts(clips, self.radii))
             .chain(clips.iter().flat_map(|clip| self.along(clip)))
             .filter(|&uv| !is_cut(uv))
-            .all(|uv| below.near(uv, 0.0, budget.rim, budget.overhang) || beside_cut(uv))
+            .all(|uv| below.near(uv, 0.0, budget, budget.overhang) || beside_cut(uv))
     }
 
     /// Places on the kept side of a chord.

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::backing::{Look, backed};
-use super::facet::farthest;
+use super::facet::extremes;
 use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
 use super::region::Region;
@@ -184,11 +184,11 @@ impl Covering<'_> {
         for piece in reached {
             let corners = surface.pieces[piece as usize];
             let facet = corners.map(|corner| self.splat.to_local(surface.point(corner)));
-            let farthest = farthest(&facet, self.splat.curvature, self.splat.radii);
-            if farthest > ROUNDED_SLACK * self.grower.budget.rim {
+            let extremes = extremes(&facet, self.splat.curvature, self.splat.radii);
+            if !extremes.iter().all(|&above| self.grower.budget.reaches(above, ROUNDED_SLACK)) {
                 return None;
             }
-            let near = farthest <= ROUNDED_SLACK * self.grower.budget.fit;
+            let near = extremes.iter().all(|above| above.abs() <= ROUNDED_SLACK * self.grower.budget.fit);
             if near && corners.iter().all(|&corner| region.marks.contains(corner)) {
                 pieces.push(piece);
             }

@@ -26,7 +26,7 @@ fn limited(name: &str, share: f64, shapes: Shapes, clips: Clips) -> Asset {
     assert!(stray <= RIM, "{name}: splats stray {stray:.3} bounds from the mesh");
     // Coarser budgets are wider than the pixels left aside along the silhouette.
     if share <= BUDGETS[1] {
-        let faults = views::compare(&mesh, &asset).faults(0);
+        let faults = views::compare(&mesh, &asset).faults();
         assert!(faults.is_empty(), "{name}: {faults:?}");
     }
     asset

@@ -29,9 +29,6 @@ const BUDGETS: [f64; 3] = [1e-2, 1e-3, 3e-4];
 /// The rim may stray this many bounds.
 const RIM: f64 = 2.0;
 
-/// Pixels that are seen through today, each of 1.6 million. To be 0 everywhere.
-const SEEN_THROUGH: [(&str, u64); 2] = [("blob", 1), ("torus", 1)];
-
 /// Vertices are within this of their formulas (fixtures/README.md).
 const VERTEX: f64 = 2.1e-7;
 
@@ -133,9 +130,7 @@ fn check(name: &str) -> (Vec<usize>, Vec<String>) {
         if share == BUDGETS[1] {
             let seen = views::compare(&mesh, &asset);
             eprintln!("    {seen}");
-            let through =
-                SEEN_THROUGH.iter().find(|(fixture, _)| *fixture == name).map_or(0, |known| known.1);
-            faults.extend(seen.faults(through).into_iter().map(|fault| format!("{name}: {fault}")));
+            faults.extend(seen.faults().into_iter().map(|fault| format!("{name}: {fault}")));
         }
         counts.push(asset.splats.len());
     }

@@ -22,16 +22,13 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What breaks a promise, if so many pixels may be seen through.
-    pub fn faults(&self, through: u64) -> Vec<String> {
-        let mut faults = Vec::new();
-        let through = self.through.saturating_sub(through);
-        for (what, count) in [("missing", self.missing), ("extra", self.extra), ("seen through", through)] {
-            if count > 0 {
-                faults.push(format!("{count} of {} pixels are {what}", self.compared));
-            }
-        }
-        faults
+    /// What breaks a promise.
+    pub fn faults(&self) -> Vec<String> {
+        [("missing", self.missing), ("extra", self.extra), ("seen through", self.through)]
+            .into_iter()
+            .filter(|&(_, count)| count > 0)
+            .map(|(what, count)| format!("{count} of {} pixels are {what}", self.compared))
+            .collect()
     }
 }
 
