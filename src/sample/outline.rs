@@ -36,7 +36,7 @@ impl Outline {
         let vertex =
             |n: usize| self.points[n % self.points.len()].extend(self.heights[n % self.points.len()]);
         let sides = self.points.len() - usize::from(!self.closed);
-        let around = |n: usize| last.get() + if n % 2 == 0 { sides - n / 2 } else { n / 2 + 1 };
+        let around = |n: usize| last.get() + if n.is_multiple_of(2) { sides - n / 2 } else { n / 2 + 1 };
         let is_near =
             |side: &usize| nearest_on(vertex(*side), vertex(side + 1), place).distance(place) <= reach;
         let found = (0..sides).map(|n| around(n) % sides).find(is_near);
