@@ -18,7 +18,7 @@ pub struct Budget {
     /// of a quadric grows with the third power of the distance, so this is worth a quarter of
     /// the radius.
     pub rim: f64,
-    /// How far it may stand above such a surface: see [`PROUD`].
+    /// How far it may stand above such a surface: less, because it shows there.
     pub proud: f64,
     /// How far, in space, a rim may stand out where the surface folds away below it, if that is what
     /// it takes to do without a last resort.
