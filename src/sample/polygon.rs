@@ -16,6 +16,8 @@ use crate::fit::ellipse::circumellipse;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::polyline::nearest_on;
+use crate::model::splat::Splat;
+use crate::model::triangle::to_triangle;
 
 /// The splat over one piece: a triangle cut out of a plane, or the disc of a single point.
 ///
@@ -32,11 +34,18 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     let pose = Pose::at(middle, normal);
     let margin = surface.piece_margin(piece);
     let (theta, radii) = circumellipse(points.map(|point| pose.to_local(point).truncate()));
-    let (pose, radii) = (pose.turned(theta), radii + margin + budget.pad);
-    let mut splat = rounded(grower, &pose, radii, DVec2::ZERO)?;
+    let pose = pose.turned(theta);
+    let padded = |share: f64| rounded(grower, &pose, radii + margin + share * budget.pad, DVec2::ZERO);
+    let mut splat = padded(1.0)?;
     if corners[0] != corners[1] {
-        let pose = Pose { center: splat.center, axes: splat.axes };
-        splat.clips = Triangle { grower, pose, radii: splat.radii, corners }.clips(region);
+        let triangle = |splat: &Splat| Triangle::below(splat, grower, corners);
+        splat.clips = triangle(&splat).clips(region);
+        if triangle(&splat).strays(&splat.clips) {
+            let cut = |splat: Splat| Some(Splat { clips: triangle(&splat).all()?, ..splat });
+            let mut less = PADS.into_iter().filter_map(padded).filter_map(cut);
+            let holds = |less: &Splat| triangle(less).is_inside() && !triangle(less).strays(&less.clips);
+            splat = less.find(holds).unwrap_or(splat);
+        }
     }
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
     // What ends at a triangle's own sides is cut by itself, whatever lies across.
@@ -44,8 +53,18 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     Some(Candidate { splat, end_clips, pieces: vec![piece], rank: 3 })
 }
 
+/// Shares of the padding that a triangle cut along its sides is tried with where all of it would reach
+/// too far beyond an acute corner.
+const PADS: [f64; 3] = [0.5, 0.2, 0.05];
+
 /// Which sides of a triangle to cut along, bit by bit; those with fewer cuts come first.
 const CUT_ALONG: [u32; 8] = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111];
+
+/// Steps along a chord between places that are looked at.
+const PLACES_ALONG: usize = 16;
+
+/// The ends of a chord are on the rim, but for rounding.
+const ON_RIM: f64 = 1e-9;
 
 /// A triangle in the plane of a splat.
 struct Triangle<'a> {
@@ -55,12 +74,18 @@ struct Triangle<'a> {
     corners: [u32; 3],
 }
 
-impl Triangle<'_> {
+impl<'a> Triangle<'a> {
+    /// That of some corners, below a splat.
+    fn below(splat: &Splat, grower: &'a Grower<'a>, corners: [u32; 3]) -> Self {
+        let pose = Pose { center: splat.center, axes: splat.axes };
+        Self { grower, pose, radii: splat.radii, corners }
+    }
+
     /// As few chords along its sides as will do.
     fn clips(&self, region: &mut Region) -> Vec<ClipCurve> {
-        let outline = self.corners.map(|corner| self.flat(corner));
         // A sliver thinner than the tolerance has no corners to cut at, and needs no cut.
-        let all = || self.fitted(&outline, true).unwrap_or_default();
+        let all = || self.all().unwrap_or_default();
+        let outline = self.outline();
         if !region.gather(self.grower.surface, &self.pose, self.radii, &self.corners) {
             return all();
         }
@@ -71,6 +96,35 @@ impl Triangle<'_> {
             .find(|(cut, clips)| self.will_do(*cut, clips, region))
             .map(|(_, clips)| clips)
             .unwrap_or_else(all)
+    }
+
+    /// Chords along all of its sides.
+    fn all(&self) -> Option<Vec<ClipCurve>> {
+        self.fitted(&self.outline(), true)
+    }
+
+    /// Whether its corners lie in the ellipse.
+    fn is_inside(&self) -> bool {
+        self.outline().iter().all(|&corner| (corner / self.radii).length_squared() <= 1.0)
+    }
+
+    /// Whether it is cut along all its sides, and what is left goes on beyond it by more than a rim may.
+    fn strays(&self, clips: &[ClipCurve]) -> bool {
+        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
+        let corners = self.outline().map(|corner| corner.extend(0.0));
+        let kept = |own: usize, uv: &DVec2| {
+            let within = (*uv / self.radii).length_squared() <= 1.0 + ON_RIM;
+            within && !conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(*uv))
+        };
+        let along = |n: usize| conics[n].points(PLACES_ALONG).filter(move |uv| kept(n, uv));
+        let places = (0..conics.len()).flat_map(along);
+        let rim = between_cuts(clips, self.radii).filter(|uv| kept(conics.len(), uv));
+        let far = |uv: DVec2| to_triangle(corners, uv.extend(0.0)).length() > self.grower.budget.rim;
+        self.all().is_some_and(|all| all == clips) && places.chain(rim).any(far)
+    }
+
+    fn outline(&self) -> [DVec2; 3] {
+        self.corners.map(|corner| self.flat(corner))
     }
 
     fn flat(&self, point: u32) -> DVec2 {
@@ -162,15 +216,53 @@ const ALONG: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
     use crate::analyse::edges::Edges;
     use crate::analyse::split::split;
+    use crate::analyse::surface::Surface;
     use crate::analyse::weld::Welded;
     use crate::fit::clip::Clips;
     use crate::fit::pose::Shapes;
-    use crate::model::splat::Splat;
     use crate::sample::budget::Budget;
+    use crate::sample::grow::Round;
     use glam::Vec3;
+
+    fn grower<'a>(surface: &'a Surface, round: &'a Round<'a>) -> Grower<'a> {
+        let budget = Budget::new(0.05, Clips::Curved);
+        Grower { surface, budget, shapes: Shapes::All, open: &[], overhang: 0.0, round }
+    }
+
+    #[test]
+    fn beyond_acute_corners_no_more_stands_out_than_at_rims() {
+        let mut less_padded = 0;
+        // As far as the file's grids may move a splat.
+        let moved = |splat: &Splat| splat.center + 0.03 * splat.axes.x_axis;
+        let round = |splat: &Splat| Some(Splat { center: moved(splat), ..splat.clone() });
+        for n in 0..300_u16 {
+            let (length, width, skew) = (f32::from(n % 10), f32::from(n / 10 % 6), f32::from(n / 60));
+            let (x, y) = (0.1 + 0.1 * length, 0.02 + 0.06 * width);
+            let positions = vec![Vec3::ZERO, Vec3::new(x, 0.0, 0.0), Vec3::new(0.4 * skew * x, y, 0.0)];
+            let welded = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
+            let surface = split(&welded, &[false; 3]);
+            let grower = grower(&surface, &round);
+            let splat = over(&grower, 0, &mut Region::new(3)).unwrap().splat;
+            let corners = [0, 1, 2].map(|corner| splat.to_local(surface.point(corner)));
+            let (_, least) = circumellipse(corners.map(|corner| corner.truncate()));
+            less_padded +=
+                u32::from(splat.radii.max_element() < least.max_element() + 0.9 * grower.budget.pad);
+            let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+            let grid =
+                (-50..=50).flat_map(|i| (-50..=50).map(move |j| DVec2::new(i.into(), j.into()) / 50.0));
+            let uvs = grid.filter(|unit| unit.length_squared() <= 1.0).map(|unit| unit * splat.radii);
+            for uv in uvs.filter(|&uv| !conics.iter().any(|conic| conic.cuts(uv))) {
+                let out = to_triangle(corners, uv.extend(0.0)).length();
+                assert!(out <= 0.1, "{n}: {out}");
+            }
+        }
+        assert!(less_padded > 0);
+    }
 
     /// How many chords the splat over a triangle in the middle of a grid of unit cells has: the grid
     /// is folded by an angle, degrees, along one side of the triangle, and cut open along it if `cut`.
@@ -189,16 +281,8 @@ mod tests {
         let marked: Vec<bool> =
             edges.edges.iter().map(|edge| cut && edge.ends.iter().all(|end| end % 5 == 2)).collect();
         let surface = split(&welded, &marked);
-        let budget = Budget::new(0.05, Clips::Curved);
         let round = |splat: &Splat| Some(splat.clone());
-        let grower = Grower {
-            surface: &surface,
-            budget,
-            shapes: Shapes::All,
-            open: &[],
-            overhang: 0.0,
-            round: &round,
-        };
+        let grower = grower(&surface, &round);
         let mut region = Region::new(surface.points.len());
         // Before the fold, with a side on it.
         over(&grower, 11, &mut region).map(|found| found.splat.clips.len())
