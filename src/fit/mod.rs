@@ -3,6 +3,7 @@
 pub mod clip;
 pub mod conic;
 pub mod ellipse;
+pub mod limits;
 pub mod offset;
 pub mod pose;
 pub mod quadric;

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec2, DVec3, Vec2Swizzles};
 use super::quadric::{Height, Moments, RIDGE};
 
 /// Where a splat stands: a point and an orthonormal frame `(i, j, k)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// The point `C`.
     pub center: DVec3,
@@ -85,6 +85,9 @@ pub enum Shapes {
 /// that matters of a frame that starts within a few degrees; a third serves bad starts.
 const ROUNDS: usize = 3;
 
+/// Rounds that do for a frame that stands well.
+const FEW_ROUNDS: usize = 2;
+
 /// How a quadric is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitting {
@@ -97,13 +100,22 @@ pub struct Fitting {
     pub least: f64,
     /// The weight, a point, of keeping the second-order terms small: see [`RIDGE`].
     pub ridge: f64,
+    /// Rounds of fitting and turning, at least one.
+    pub rounds: usize,
 }
 
 impl Fitting {
     /// A fit of anything to points within `radius`, its axes always the principal ones.
     #[must_use]
     pub fn within(radius: f64) -> Self {
-        Self { shapes: Shapes::All, radius, least: 0.0, ridge: RIDGE }
+        Self { shapes: Shapes::All, radius, least: 0.0, ridge: RIDGE, rounds: ROUNDS }
+    }
+
+    /// The same fit from a start that stands well: near the surface, its `k` within a few degrees of the
+    /// normal there.
+    #[must_use]
+    pub fn again(&self) -> Self {
+        Self { rounds: FEW_ROUNDS, ..*self }
     }
 }
 
@@ -117,10 +129,10 @@ pub fn principal(
     fitting: &Fitting,
     points: impl Iterator<Item = (DVec3, f64)> + Clone,
 ) -> Principal {
-    let &Fitting { shapes, radius, least, ridge } = fitting;
+    let &Fitting { shapes, radius, least, ridge, rounds } = fitting;
     let mut pose = *start;
     let mut height = Height::default();
-    for round in 0..ROUNDS {
+    for round in 0..rounds {
         let mut moments = Moments::new(radius);
         for (point, weight) in points.clone() {
             let local = pose.to_local(point);
@@ -131,7 +143,7 @@ pub fn principal(
             let Height { h, c, d, .. } = moments.solve_plane();
             height = Height { h, c, d, ..height };
         }
-        if round + 1 < ROUNDS {
+        if round + 1 < rounds {
             pose = pose.settled(&height);
         }
     }

@@ -16,6 +16,7 @@ use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care, Clips};
 use crate::fit::ellipse::{circumellipse, crossings};
+use crate::fit::limits::{self, Limited};
 use crate::fit::pose::{Fitting, Pose, Principal, Shapes, above, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
@@ -66,6 +67,12 @@ const LINE_WEIGHT: f64 = 4.0;
 /// A quadric of six terms needs no more members than this to be fitted to, borders and rim
 /// aside; all are judged.
 const MOST_FITTED: usize = 320;
+
+/// Up to this share of an ellipse its quadric is held to the budget for fits, as if it were to cover all
+/// of it. At 0.6 to 0.9 files are of one size. Beyond, it is held to how far rims may stand out, both
+/// ways: were they fitted to sink by all that they may, files would be no smaller, and more of their rims
+/// would be seen from the side.
+const COVERED_SHARE: f64 = 0.8;
 
 /// Principal directions matter where the two sagittas differ by this share of the budget.
 const ROUND_SHARE: f64 = 0.1;
@@ -236,26 +243,46 @@ impl Grower<'_> {
         self.budget.clip.clips == Clips::Partners && beyond.any()
     }
 
-    /// The quadric of members and rim, in its principal frame; `None` if it is too steep.
+    /// The quadric of members and rim, in its principal frame; `None` if it is too steep. Beside lines,
+    /// where the least-squares fit does not keep the budget, another that does is looked for.
     fn fitted(&self, pose: &Pose, outer: DVec2, region: &Region) -> Option<Principal> {
         let largest = outer.max_element();
         let least = ROUND_SHARE * self.budget.fit / (largest * largest);
-        let rim = self.rim(pose, outer, region).map(|point| (point, 1.0));
+        let mut places = self.limited(pose, outer, region);
+        let too_steep = |fit: &Principal| (2.0 * fit.curvature * outer).abs().max_element() > STEEPEST;
+        // Points of a strip say little of the curvature across it, and what they say may be
+        // nothing but their distance from the strip's own surface.
+        let (fitting, fit) = [RIDGE, STIFF_RIDGE].into_iter().find_map(|ridge| {
+            let fitting = Fitting { shapes: self.shapes, least, ridge, ..Fitting::within(largest) };
+            let weighted = places.iter().map(|place| (place.point, place.weight));
+            let fit = principal(pose, &fitting, weighted);
+            (!too_steep(&fit)).then_some((fitting, fit))
+        })?;
+        // Elsewhere, where a surface is seen along it, rays pass between splats that use all of the budget.
+        let at_line = region.members.iter().any(|member| self.surface.on_border(member.point));
+        let kept = at_line.then(|| limits::within(&fit, &fitting, &mut places)).flatten();
+        Some(kept.filter(|kept| !too_steep(kept)).unwrap_or(fit))
+    }
+
+    /// What a quadric over an ellipse is fitted to, and the budget there: for what it should cover, on
+    /// lines, and near the rim.
+    fn limited(&self, pose: &Pose, outer: DVec2, region: &Region) -> Vec<Limited> {
+        let Budget { fit, line, proud, .. } = self.budget;
         // Every so many-th of the members, which come ring by ring: the sums hardly change.
         let stride = region.members.len().div_ceil(MOST_FITTED);
         let members = region.members.iter().step_by(stride).map(|member| {
-            let weight = if self.surface.on_border(member.point) { LINE_WEIGHT } else { 1.0 };
-            (self.surface.point(member.point), weight)
+            let (weight, range) = if self.surface.on_border(member.point) {
+                (LINE_WEIGHT, [-line, line])
+            } else if (member.local.truncate() / outer).length() < COVERED_SHARE {
+                (1.0, [-fit, fit])
+            } else {
+                (1.0, [-proud, proud])
+            };
+            Limited { point: self.surface.point(member.point), weight, range }
         });
-        let points = members.chain(rim);
-        // Points of a strip say little of the curvature across it, and what they say may be
-        // nothing but their distance from the strip's own surface.
-        [RIDGE, STIFF_RIDGE].into_iter().find_map(|ridge| {
-            let fitting = Fitting { shapes: self.shapes, radius: largest, least, ridge };
-            let fitted = principal(pose, &fitting, points.clone());
-            let steepest = (2.0 * fitted.curvature * outer).abs().max_element();
-            (steepest <= STEEPEST).then_some(fitted)
-        })
+        let rim =
+            self.rim(pose, outer, region).map(|point| Limited { point, weight: 1.0, range: [-proud, proud] });
+        members.chain(rim).collect()
     }
 
     /// Whether members and rim lie near enough to a quadric not to stray from the surface.
