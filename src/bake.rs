@@ -1,6 +1,7 @@
 //! The recipe: from a mesh or cloud to an asset, one stage a line.
 
 pub mod found_lines;
+mod growing;
 pub mod meant;
 pub mod noise;
 pub mod options;
@@ -18,7 +19,7 @@ use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_creases::{Sought, cloud_creases};
 use crate::analyse::cloud_surface::{Lines, cloud_surface};
-use crate::analyse::mesh_surface::{Features, Found, Making, cut_lines, mesh_surface};
+use crate::analyse::mesh_surface::{Features, Found, Making, Marked, cut_lines};
 use crate::analyse::partners::Tally;
 use crate::analyse::surface::Surface;
 use crate::analyse::thin::Reach;
@@ -37,10 +38,10 @@ use crate::model::splat::Splat;
 use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
-use crate::sample::grow::Grower;
 use crate::sample::lower_bound::LowerBound;
-use crate::sample::outline::open_sides;
+use crate::sample::scout::Begun;
 pub use found_lines::found_lines;
+use growing::Growing;
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
@@ -124,23 +125,24 @@ pub fn bake(
     clock.stage(progress, "analyse");
     let meant = meant(input, options, max_error)?;
     check_noise(&meant, options.denoise, max_error)?;
-    let Analysed { mut surface, features, left_out } = analyse(&meant, options, max_error, diagonal)?;
+    let Analysed { mut surface, marked, features, left_out } = analyse(&meant, options, max_error, diagonal)?;
+    let round = |splat: &Splat| rounding(splat, max_error);
+    let growing =
+        Growing { budget: Budget::new(max_error, options.clips), shapes: options.shapes, round: &round };
+    let mut begun = Begun::default();
+    if let Some(marked) = marked {
+        clock.stage(progress, "scout");
+        (surface, begun) = growing.begun(surface, marked, progress);
+    }
     let colors_left_out = choose_colors(&mut surface, options.colors)?;
     clock.stage(progress, "sample");
-    let round = |splat: &Splat| rounding(splat, max_error);
-    let budget = Budget::new(max_error, options.clips);
-    let open = if options.clips == Clips::Partners { open_sides(&surface) } else { Vec::new() };
-    let grower = Grower {
-        surface: &surface,
-        budget,
-        shapes: options.shapes,
-        open: &open,
-        overhang: 0.0,
-        round: &round,
-    };
+    let open = growing.open_sides(&surface);
+    let grower = growing.over(&surface, &open);
     let regions = Regions::new(surface.points.len());
     let total = surface.pieces.len() as u64;
-    let found = candidates(&grower, &regions, options.effort, |done| progress.advance(done as u64, total));
+    let found = candidates(&grower, &regions, &begun, options.effort, |done| {
+        progress.advance(done as u64, total);
+    });
     clock.stage(progress, "cover");
     let (cover, choice) = cover(&grower, &regions, found, options.effort);
     if choice.uncovered > 0 {
@@ -284,6 +286,8 @@ const THIN_OFFSET: f64 = 0.25;
 #[derive(Default)]
 struct Analysed {
     surface: Surface,
+    /// What a mesh's surface was made of.
+    marked: Option<Marked>,
     features: Found,
     left_out: Vec<u32>,
 }
@@ -300,13 +304,15 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
     match meant.input.as_ref() {
         Input::Mesh(mesh) => {
             let features = features(mesh, &meant.edges, options.edge_angle, max_error);
-            let (surface, found) = mesh_surface(mesh, &features, &making(max_error, diagonal));
+            let (marked, found) = Marked::of(mesh, &features, &making(max_error, diagonal));
             // Of a smooth surface's lines, the input's are those to tell of.
             let matched = match &meant.made {
                 Made::Smooth(before) => before.matched.clone(),
                 Made::Itself | Made::Quiet(_) => found.matched,
             };
-            Ok(Analysed { surface, features: Found { matched, ..found }, ..Analysed::default() })
+            let surface = marked.surface();
+            let features = Found { matched, ..found };
+            Ok(Analysed { surface, marked: Some(marked), features, ..Analysed::default() })
         }
         Input::Cloud(cloud) => {
             let given = match meant.edges.as_ref() {
@@ -320,7 +326,7 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             let reach = thinning(max_error, diagonal);
             let found = cloud_surface(cloud, options.normals.into(), lines, Some(reach))?;
             let features = Found { feature_edges: found.edges, matched: found.matched };
-            Ok(Analysed { surface: found.surface, features, left_out: found.left_out })
+            Ok(Analysed { surface: found.surface, marked: None, features, left_out: found.left_out })
         }
     }
 }

@@ -7,7 +7,7 @@ use super::creases::creases;
 use super::edges::Edges;
 use super::given_lines::{self, Matched, Meant};
 use super::line_ends::carried;
-use super::refine::refine;
+use super::refine::{Fineness, Refined, refine};
 use super::split::split;
 use super::surface::Surface;
 use super::weld::{Welded, weld};
@@ -55,31 +55,51 @@ pub struct Making<'a> {
     pub worth: Worth<'a>,
 }
 
-/// The surface of a mesh, cut along feature edges.
-#[must_use]
-pub fn mesh_surface(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Surface, Found) {
-    let (fine, mut marked, found) = marked(mesh, features, making);
-    let edges = Edges::of(&fine.triangles);
-    let carried = carried(&fine, &edges, &marked, making.worth.max_error);
-    carried.iter().for_each(|&edge| marked[edge as usize] = true);
-    let mut surface = split(&fine, &marked);
-    surface.carried_on(carried.iter().map(|&edge| edges.edges[edge as usize].ends));
-    (surface, found)
+/// A mesh that is welded and refined, and which of its edges are feature edges.
+#[derive(Default)]
+pub struct Marked {
+    welded: Welded,
+    marked: Vec<bool>,
+    max_error: f64,
 }
 
-/// A mesh, refined; which of its edges are feature edges; and what was found.
-fn marked(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Welded, Vec<bool>, Found) {
-    let welded = weld(mesh);
-    let (marked, mut found) = mark(&welded, features);
-    let (fine, mut marked) = refine(welded, marked, making.longest, making.most);
-    if let Features::Sharp { shortest, .. } = features {
-        // Only now are there vertices enough on large facets to judge by.
-        let edges = Edges::of(&fine.triangles);
-        drop_needless(&fine, &edges, &making.worth, &mut marked);
-        chains::drop_short(&fine.positions, &edges, *shortest, &mut marked);
-        found.feature_edges = marked.iter().filter(|mark| **mark).count();
+impl Marked {
+    /// Welds a mesh, finds or matches its feature edges and refines it; also what was found.
+    #[must_use]
+    pub fn of(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Self, Found) {
+        let welded = weld(mesh);
+        let (marked, mut found) = mark(&welded, features);
+        let too_long = |_: u32, way: DVec3| way.length() > making.longest;
+        let Refined { welded, mut marked, .. } =
+            refine(welded, marked, &Fineness { too_long: &too_long, most: making.most });
+        if let Features::Sharp { shortest, .. } = features {
+            // Only now are there vertices enough on large facets to judge by.
+            let edges = Edges::of(&welded.triangles);
+            drop_needless(&welded, &edges, &making.worth, &mut marked);
+            chains::drop_short(&welded.positions, &edges, *shortest, &mut marked);
+            found.feature_edges = marked.iter().filter(|mark| **mark).count();
+        }
+        (Self { welded, marked, max_error: making.worth.max_error }, found)
     }
-    (fine, marked, found)
+
+    /// The same, refined further; for each of its triangles the number of the one it is a part of.
+    #[must_use]
+    pub fn refined(self, fineness: &Fineness<'_>) -> (Self, Vec<u32>) {
+        let Refined { welded, marked, part_of } = refine(self.welded, self.marked, fineness);
+        (Self { welded, marked, ..self }, part_of)
+    }
+
+    /// The surface, cut along feature edges; a piece for each triangle, in their order.
+    #[must_use]
+    pub fn surface(&self) -> Surface {
+        let edges = Edges::of(&self.welded.triangles);
+        let carried = carried(&self.welded, &edges, &self.marked, self.max_error);
+        let mut marked = self.marked.clone();
+        carried.iter().for_each(|&edge| marked[edge as usize] = true);
+        let mut surface = split(&self.welded, &marked);
+        surface.carried_on(carried.iter().map(|&edge| edges.edges[edge as usize].ends));
+        surface
+    }
 }
 
 /// The lines that a mesh's surface is cut along, model units, each a segment of two points: its
@@ -97,7 +117,7 @@ pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<V
             (welded, vec![false; edges.edges.len()], given)
         }
         Features::Sharp { .. } | Features::None => {
-            let (welded, marked, _) = marked(mesh, features, making);
+            let (Marked { welded, marked, .. }, _) = Marked::of(mesh, features, making);
             (welded, marked, Vec::new())
         }
     };

@@ -1,6 +1,7 @@
 //! Splits long edges, so that pieces are small beside the splats that will cover them.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::edges::{Edge, Edges};
 use super::surface::NONE;
@@ -9,24 +10,54 @@ use super::weld::Welded;
 /// Rounds of halving after which refinement stops whatever the lengths.
 const ROUNDS: usize = 12;
 
-/// Halves edges longer than `longest` (model units) until none is left or the mesh would
-/// have more than `most` triangles.
+/// Which edges are to be halved.
+pub struct Fineness<'a> {
+    /// Whether an edge, given as the way along it (model units), is too long for a triangle beside it,
+    /// given as the number of the one that it is a part of.
+    pub too_long: &'a (dyn Fn(u32, DVec3) -> bool + Sync),
+    /// No halving makes more triangles than this.
+    pub most: usize,
+}
+
+/// A mesh whose edges are short enough.
+pub struct Refined {
+    /// The mesh.
+    pub welded: Welded,
+    /// Which of its edges, in the order of [`Edges::of`], are feature edges.
+    pub marked: Vec<bool>,
+    /// For each triangle the number of the one that it is a part of, ascending.
+    pub part_of: Vec<u32>,
+}
+
+/// Halves edges that are too long for a triangle beside them until none is left or there would be too
+/// many triangles.
 ///
 /// A triangle with one, two or three long edges becomes two, three or four; new vertices lie
 /// on the old edges, so the surface stays the same. `marked` tells which edges, in the order
-/// of [`Edges::of`], are feature edges; the answer is the same list for the refined mesh.
+/// of [`Edges::of`], are feature edges.
 #[must_use]
-pub fn refine(mut welded: Welded, mut marked: Vec<bool>, longest: f64, most: usize) -> (Welded, Vec<bool>) {
+pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>) -> Refined {
+    let mut part_of: Vec<u32> = (0..welded.triangles.len() as u32).collect();
     for _ in 0..ROUNDS {
         let edges = Edges::of(&welded.triangles);
-        let middles = split_long(&mut welded, &edges, longest);
-        let split = middles.iter().filter(|&&m| m != NONE).count();
-        if split == 0 || welded.triangles.len() + 2 * split > most {
+        let long = |edge: &Edge| {
+            let [a, b] = welded.places(edge.ends);
+            edges.halves(edge).iter().any(|half| (fineness.too_long)(part_of[half.face as usize], b - a))
+        };
+        let long: Vec<bool> = edges.edges.par_iter().map(long).collect();
+        let split = long.iter().filter(|long| **long).count();
+        if split == 0 || welded.triangles.len() + 2 * split > fineness.most {
             break;
         }
+        let middles = middles(&mut welded, &edges, &long);
+        let parts = of_halves(&edges, &middles, welded.triangles.len())
+            .into_iter()
+            .map(|sides| 1 + sides.iter().filter(|side| **side != NONE).count());
+        part_of =
+            part_of.iter().zip(parts).flat_map(|(&whole, parts)| std::iter::repeat_n(whole, parts)).collect();
         marked = halve(&mut welded, &edges, &middles, &marked);
     }
-    (welded, marked)
+    Refined { welded, marked, part_of }
 }
 
 /// Splits the triangles at the middles of their edges, given for each edge or [`NONE`]; which edges
@@ -52,9 +83,8 @@ pub(super) fn push_middle(welded: &mut Welded, ends: [u32; 2], offset: DVec3) ->
 }
 
 /// Appends the middles of long edges; for each edge its middle's index or [`NONE`].
-fn split_long(welded: &mut Welded, edges: &Edges, longest: f64) -> Vec<u32> {
-    let long: Vec<bool> = edges.edges.iter().map(|edge| length(welded, edge) > longest).collect();
-    let middle = |(edge, long): (&Edge, bool)| match long {
+fn middles(welded: &mut Welded, edges: &Edges, long: &[bool]) -> Vec<u32> {
+    let middle = |(edge, &long): (&Edge, &bool)| match long {
         true => push_middle(welded, edge.ends, DVec3::ZERO),
         false => NONE,
     };
@@ -139,7 +169,9 @@ mod tests {
             ];
             let start = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
             let whole = area(&start);
-            let (fine, marked) = refine(start, vec![true, false, false], 0.11, 100_000);
+            let too_long = |_: u32, way: DVec3| way.length() > 0.11;
+            let fineness = Fineness { too_long: &too_long, most: 100_000 };
+            let Refined { welded: fine, marked, .. } = refine(start, vec![true, false, false], &fineness);
             assert!((area(&fine) - whole).abs() < 1e-6 * whole);
             assert!(fine.triangles.iter().all(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
             let edges = Edges::of(&fine.triangles);

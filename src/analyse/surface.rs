@@ -175,6 +175,15 @@ impl Surface {
         self.normals[index as usize].as_dvec3()
     }
 
+    /// The pieces at some points, ascending.
+    #[must_use]
+    pub fn pieces_at(&self, points: impl Iterator<Item = u32>) -> Vec<u32> {
+        let mut pieces: Vec<u32> = points.flat_map(|point| self.pieces_of.row(point)).copied().collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
     /// Whether a point lies on a feature line or border.
     #[must_use]
     pub fn on_border(&self, index: u32) -> bool {

@@ -115,11 +115,7 @@ pub(super) struct Below {
 impl Below {
     /// The triangles of a mesh at some points.
     pub(super) fn triangles(surface: &Surface, pose: &Pose, points: impl Iterator<Item = u32>) -> Self {
-        let mut pieces: Vec<u32> =
-            points.flat_map(|point| surface.pieces_of.row(point).iter().copied()).collect();
-        pieces.sort_unstable();
-        pieces.dedup();
-        let corners = pieces.iter().map(|&piece| surface.pieces[piece as usize]);
+        let corners = surface.pieces_at(points).into_iter().map(|piece| surface.pieces[piece as usize]);
         let local = |point: u32| pose.to_local(surface.point(point));
         Self { triangles: corners.map(|corners| corners.map(local)).collect(), ..Self::default() }
     }

@@ -4,9 +4,10 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::grow::Grower;
+use super::grow::{Domain, Grower};
 use super::region::Region;
-use super::settle::Candidate;
+use super::scout::Begun;
+use super::settle::{Candidate, settle};
 use crate::analyse::canonical::mix;
 
 /// Seeds grown side by side before their cores are marked. Batches are of the same size
@@ -39,39 +40,74 @@ pub fn core_share(effort: u8) -> f64 {
     1.0 - 0.08 * f64::from(effort.clamp(1, 9))
 }
 
-/// Grows candidates from seeds until the core of one holds every piece that one covers.
+/// Pieces to grow splats from, strewn over the surface in an order of their own.
+pub(super) struct Seeds {
+    order: Vec<u32>,
+    done: Vec<bool>,
+    at: usize,
+}
+
+impl Seeds {
+    /// All of so many pieces.
+    pub(super) fn over(pieces: usize) -> Self {
+        let mut order: Vec<u32> = (0..pieces as u32).collect();
+        order.par_sort_unstable_by_key(|&piece| mix(u64::from(piece)));
+        Self { order, done: vec![false; pieces], at: 0 }
+    }
+
+    /// The next that are not done; `None` once there are none.
+    pub(super) fn next_batch(&mut self) -> Option<Vec<u32>> {
+        let mut batch = Vec::with_capacity(BATCH);
+        while self.at < self.order.len() && batch.len() < BATCH {
+            let piece = self.order[self.at];
+            if !self.done[piece as usize] {
+                batch.push(piece);
+            }
+            self.at += 1;
+        }
+        (!batch.is_empty()).then_some(batch)
+    }
+
+    /// How many have been in a batch or left out so far.
+    pub(super) fn passed(&self) -> usize {
+        self.at
+    }
+
+    /// Leaves out these.
+    pub(super) fn done(&mut self, pieces: Vec<u32>) {
+        pieces.into_iter().for_each(|piece| self.done[piece as usize] = true);
+    }
+}
+
+/// Grows candidates from seeds until the core of one holds every piece that one covers; those begun
+/// come first.
 ///
 /// `advance` is told how many pieces are done.
 pub fn candidates(
     grower: &Grower,
     regions: &Regions,
+    begun: &Begun,
     effort: u8,
     mut advance: impl FnMut(usize),
 ) -> Vec<Candidate> {
-    let pieces = grower.surface.pieces.len();
-    let mut order: Vec<u32> = (0..pieces as u32).collect();
-    order.par_sort_unstable_by_key(|&piece| mix(u64::from(piece)));
-    let mut done = vec![false; pieces];
+    let with_core = |candidate: Candidate| (core(grower, &candidate, core_share(effort)), candidate);
+    let end = |(domain, piece): &(Domain, u32)| {
+        let seeds = grower.surface.pieces[*piece as usize];
+        regions.with(|region| settle(grower, domain.clone(), &seeds, *piece, region)).map(with_core)
+    };
+    let mut seeds = Seeds::over(grower.surface.pieces.len());
     let mut found = Vec::new();
-    let mut at = 0;
-    while at < pieces {
-        let mut batch = Vec::with_capacity(BATCH);
-        while at < pieces && batch.len() < BATCH {
-            if !done[order[at] as usize] {
-                batch.push(order[at]);
-            }
-            at += 1;
-        }
-        let grow = |&piece: &u32| {
-            let candidate = regions.with(|region| grower.grow(piece, region))?;
-            Some((core(grower, &candidate, core_share(effort)), candidate))
-        };
-        let grown: Vec<Option<(Vec<u32>, Candidate)>> = batch.par_iter().map(grow).collect();
+    let mut take = |seeds: &mut Seeds, grown: Vec<Option<(Vec<u32>, Candidate)>>| {
         for (core, candidate) in grown.into_iter().flatten() {
-            core.into_iter().for_each(|piece| done[piece as usize] = true);
+            seeds.done(core);
             found.push(candidate);
         }
-        advance(at);
+    };
+    take(&mut seeds, begun.domains.par_iter().map(end).collect());
+    while let Some(batch) = seeds.next_batch() {
+        let grow = |&piece: &u32| regions.with(|region| grower.grow(piece, region)).map(with_core);
+        take(&mut seeds, batch.par_iter().map(grow).collect());
+        advance(seeds.passed());
     }
     found
 }

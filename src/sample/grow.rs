@@ -69,9 +69,9 @@ const LINE_WEIGHT: f64 = 4.0;
 const MOST_FITTED: usize = 320;
 
 /// Up to this share of an ellipse its quadric is held to the budget for fits, as if it were to cover all
-/// of it. At 0.6 to 0.9 files are of one size. Beyond, it is held to how far rims may stand out, both
-/// ways: were they fitted to sink by all that they may, files would be no smaller, and more of their rims
-/// would be seen from the side.
+/// of it. At 0.6 to 0.9 files are of one size, at 0 (no part) 5 % larger. Beyond, it is held to how far
+/// rims may stand out, both ways: were they fitted to sink by all that they may, files would be no
+/// smaller, and more of their rims would be seen from the side.
 const COVERED_SHARE: f64 = 0.8;
 
 /// Principal directions matter where the two sagittas differ by this share of the budget.
@@ -115,7 +115,7 @@ pub struct Grower<'a> {
 }
 
 /// A pose and radii with the quadric found for them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Domain {
     pub(super) pose: Pose,
     /// Of the ellipse that is trusted to cover; the splat's own goes on by the pad.
@@ -123,9 +123,9 @@ pub(super) struct Domain {
     pub(super) curvature: DVec2,
     pub(super) rank: u8,
     /// How many points the ellipse reaches and the quadric covers.
-    members: usize,
+    pub(super) members: usize,
     /// How far from the centre they lie along each axis.
-    extent: DVec2,
+    pub(super) extent: DVec2,
 }
 
 impl Grower<'_> {
@@ -138,6 +138,14 @@ impl Grower<'_> {
             let best = self.enlarged(least, &seeds, region);
             settle(self, best, &seeds, piece, region)
         })
+    }
+
+    /// The domain that [`Self::grow`] would make a splat of, before it is rounded and cut with care.
+    pub(super) fn domain(&self, piece: u32, region: &mut Region) -> Option<Domain> {
+        let seeds = self.surface.pieces[piece as usize];
+        let least =
+            self.starts(piece).find_map(|(pose, radii)| self.attempt(&pose, radii, &seeds, region).ok())?;
+        Some(self.enlarged(least, &seeds, region))
     }
 
     /// The same for a piece that this fails for: rims may stand out a little where the surface folds
@@ -243,8 +251,8 @@ impl Grower<'_> {
         self.budget.clip.clips == Clips::Partners && beyond.any()
     }
 
-    /// The quadric of members and rim, in its principal frame; `None` if it is too steep. Beside lines,
-    /// where the least-squares fit does not keep the budget, another that does is looked for.
+    /// The quadric of members and rim, in its principal frame; `None` if it is too steep. Where the
+    /// least-squares fit does not keep the budget, another that does is looked for.
     fn fitted(&self, pose: &Pose, outer: DVec2, region: &Region) -> Option<Principal> {
         let largest = outer.max_element();
         let least = ROUND_SHARE * self.budget.fit / (largest * largest);
@@ -258,10 +266,8 @@ impl Grower<'_> {
             let fit = principal(pose, &fitting, weighted);
             (!too_steep(&fit)).then_some((fitting, fit))
         })?;
-        // Elsewhere, where a surface is seen along it, rays pass between splats that use all of the budget.
-        let at_line = region.members.iter().any(|member| self.surface.on_border(member.point));
-        let kept = at_line.then(|| limits::within(&fit, &fitting, &mut places)).flatten();
-        Some(kept.filter(|kept| !too_steep(kept)).unwrap_or(fit))
+        let kept = limits::within(&fit, &fitting, &mut places).filter(|kept| !too_steep(kept));
+        Some(kept.unwrap_or(fit))
     }
 
     /// What a quadric over an ellipse is fitted to, and the budget there: for what it should cover, on

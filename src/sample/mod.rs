@@ -16,5 +16,6 @@ pub mod outline;
 pub mod polygon;
 mod rechoose;
 pub mod region;
+pub mod scout;
 mod set_cover;
 pub mod settle;

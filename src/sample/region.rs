@@ -38,6 +38,20 @@ impl Region {
         self.members.iter().map(|member| member.point).chain(self.rim.iter().map(|&(_, outside)| outside))
     }
 
+    /// Marks these points, and no others.
+    pub fn mark_only(&mut self, points: &[u32]) {
+        self.marks.clear();
+        for &point in points {
+            self.marks.insert(point);
+        }
+    }
+
+    /// Whether all of these points are marked.
+    #[must_use]
+    pub fn marks_all(&self, points: &[u32]) -> bool {
+        points.iter().all(|&point| self.marks.contains(point))
+    }
+
     /// Walks from the seeds over all points inside the ellipse.
     ///
     /// False where a seed lies outside. A surface that

@@ -169,19 +169,9 @@ impl Covering<'_> {
         let surface = self.grower.surface;
         let inside = region.members.iter().filter(|member| self.covers(member.local, 0.0));
         let points: Vec<u32> = inside.map(|member| member.point).collect();
-        let mut reached: Vec<u32> = region
-            .members
-            .iter()
-            .flat_map(|member| surface.pieces_of.row(member.point).iter().copied())
-            .collect();
-        reached.sort_unstable();
-        reached.dedup();
-        region.marks.clear();
-        for &point in &points {
-            region.marks.insert(point);
-        }
+        region.mark_only(&points);
         let mut pieces = Vec::new();
-        for piece in reached {
+        for piece in surface.pieces_at(region.members.iter().map(|member| member.point)) {
             let corners = surface.pieces[piece as usize];
             let facet = corners.map(|corner| self.splat.to_local(surface.point(corner)));
             let extremes = extremes(&facet, self.splat.curvature, self.splat.radii);
@@ -189,7 +179,7 @@ impl Covering<'_> {
                 return None;
             }
             let near = extremes.iter().all(|above| above.abs() <= ROUNDED_SLACK * self.grower.budget.fit);
-            if near && corners.iter().all(|&corner| region.marks.contains(corner)) {
+            if near && region.marks_all(&corners) {
                 pieces.push(piece);
             }
         }
