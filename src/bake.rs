@@ -34,6 +34,7 @@ use crate::model::cloud::Cloud;
 use crate::model::frame::Frame;
 use crate::model::mesh::Mesh;
 use crate::model::polyline::Polylines;
+use crate::model::sight::Sight;
 use crate::model::splat::Splat;
 use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
@@ -49,7 +50,8 @@ use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `sample`, `cover`, `bound`, `partners`, `encode`, `write`).
+    /// A stage begins (`read`, `analyse`, `scout`, `sample`, `cover`, `bound`, `seal`, `partners`, `encode`,
+    /// `measure`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
     fn advance(&mut self, done: u64, total: u64);
@@ -108,14 +110,22 @@ pub struct Baked {
 /// Some(s.clone())`.
 pub type Rounding<'a> = dyn Fn(&Splat, f64) -> Option<Splat> + Sync + 'a;
 
-/// Bakes an input to splats that keep the error bound when rounded by `rounding`.
+/// The rays on which whoever shows an asset sees holes in it, beside the input or what stands in for it:
+/// those that should be stopped by a splat, and are not. For those who show nothing: `|_, _|
+/// Ok(Vec::new())`.
+pub type Looking<'a> = dyn FnMut(&Input, &Asset) -> Result<Vec<Sight>> + 'a;
+
+/// Bakes an input to splats that keep the error bound when rounded by `rounding`, and leave no hole for
+/// `looking` but where no splat that keeps the bound closes it.
 ///
 /// # Errors
-/// Usage errors for options out of range; input errors for an input without any surface.
+/// Usage errors for options out of range; input errors for an input without any surface; those of
+/// `looking`.
 pub fn bake(
     input: &Input,
     options: &Options,
     rounding: &Rounding<'_>,
+    looking: &mut Looking<'_>,
     progress: &mut dyn Progress,
 ) -> Result<Baked> {
     let mut clock = Clock::default();
@@ -144,7 +154,7 @@ pub fn bake(
         progress.advance(done as u64, total);
     });
     clock.stage(progress, "cover");
-    let (cover, choice) = cover(&grower, &regions, found, options.effort);
+    let (mut cover, mut choice) = cover(&grower, &regions, found, options.effort);
     if choice.uncovered > 0 {
         return Err(Error::Internal(format!(
             "{} pieces of the surface could not be covered",
@@ -155,6 +165,24 @@ pub fn bake(
         clock.stage(progress, "bound");
         cover.lower_bound()
     });
+    let asset = |splats: Vec<Splat>| Asset {
+        frame: cloud.frame,
+        diagonal,
+        max_error,
+        fit: Accuracy::default(),
+        has_colors: !surface.colors.is_empty(),
+        splats,
+    };
+    clock.stage(progress, "seal");
+    // What partners cut away is not known yet.
+    for _ in 0..if options.clips == Clips::Partners { 0 } else { SEALINGS } {
+        let sights = looking(&meant.input, &asset(cover.splats()))?;
+        let added = cover.seal(&grower, &regions, &sights);
+        choice.sealing += added;
+        if added == 0 {
+            break;
+        }
+    }
     let chosen = cover.chosen();
     let (splats, partners) = match options.clips {
         Clips::Curved | Clips::Straight => (chosen.into_iter().map(|one| one.splat).collect(), None),
@@ -164,14 +192,7 @@ pub fn bake(
             (splats, Some(tally))
         }
     };
-    let asset = Asset {
-        frame: cloud.frame,
-        diagonal,
-        max_error,
-        fit: Accuracy::default(),
-        has_colors: !surface.colors.is_empty(),
-        splats,
-    };
+    let asset = asset(splats);
     let samples = surface.points.len();
     let stand_in = match meant.input {
         Cow::Owned(made) => Some(made),
@@ -272,6 +293,10 @@ fn making(max_error: f64, diagonal: f64) -> Making<'static> {
 fn piece_length(max_error: f64, diagonal: f64) -> f64 {
     PIECE_SHARE * expected_radius(max_error, diagonal)
 }
+
+/// Holes are looked for and closed so many times: what closes one is cut a little otherwise once it is
+/// stored.
+const SEALINGS: usize = 3;
 
 /// How far points of a cloud stand for others: over areas as wide as a mesh's pieces are long.
 fn thinning(max_error: f64, diagonal: f64) -> Reach {

@@ -7,7 +7,9 @@ use crate::error::{Error, Result};
 use crate::format::{self, quantize::Quantizer};
 use crate::ingest::Input;
 use crate::measure::fit::{REACH, fit, points};
+use crate::measure::sights::Sights;
 use crate::model::asset::Asset;
+use crate::model::sight::Sight;
 use crate::model::splat::Splat;
 use crate::render::input::Model;
 
@@ -30,7 +32,9 @@ pub struct Delivery {
 /// Those of [`bake`]; [`Error::Internal`] should the decoded splats break the bound.
 pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) -> Result<Delivery> {
     let rounding = |splat: &Splat, max_error| Quantizer::new(max_error).snap(splat).ok();
-    let baked = bake(input, options, &rounding, progress)?;
+    let mut sights = None;
+    let mut looking = |input: &Input, asset: &Asset| holes(input, asset, &mut sights);
+    let baked = bake(input, options, &rounding, &mut looking, progress)?;
     let mut clock = Clock::default();
     clock.stage(progress, "encode");
     let bytes = format::encode(&baked.asset)?;
@@ -43,6 +47,21 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     let mut stages = baked.stages.clone();
     stages.extend(clock.finish());
     Ok(Delivery { bytes, asset, stages, baked })
+}
+
+/// The rays on which an asset of a mesh shows holes once it is stored; `sights` holds what is known of
+/// the mesh.
+///
+/// A cloud has no surface to look at between its points.
+fn holes(input: &Input, asset: &Asset, sights: &mut Option<Sights>) -> Result<Vec<Sight>> {
+    if matches!(input, Input::Cloud(_)) {
+        return Ok(Vec::new());
+    }
+    let known = match sights {
+        Some(known) => known,
+        None => sights.insert(Sights::of(model(input))?),
+    };
+    known.open(&format::decode(&format::encode(asset)?, &format::Limits::default())?)
 }
 
 /// Measures the fit of the decoded splats and holds it against the bound.

@@ -8,7 +8,9 @@ use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use qsplat::format::{self, Limits};
-use qsplat::measure::Measures;
+use qsplat::ingest;
+use qsplat::measure::{Measures, fit};
+use qsplat::render::input::Model;
 use qsplat::report::Report;
 use tempfile::TempDir;
 
@@ -445,10 +447,16 @@ fn measure_says_everything_and_passes_its_check() {
 fn measure_finds_a_splat_that_is_gone() {
     let (directory, file) = baked();
     let mut asset = format::read_file(file.as_ref(), &Limits::default()).unwrap();
-    // The largest: what it covers, its neighbours leave to it.
-    let area = |n: &usize| asset.splats[*n].radii.element_product();
-    let largest = (0..asset.splats.len()).max_by(|a, b| area(a).total_cmp(&area(b))).unwrap();
-    asset.splats.remove(largest);
+    let cloud = ingest::read(fixture("capped-cylinder.ply").as_ref(), &ingest::Limits::default()).unwrap();
+    let points = fit::points(Model::Cloud(cloud.cloud()), &[]);
+    let without = |n: &usize| {
+        let mut asset = asset.clone();
+        asset.splats.remove(*n);
+        fit::fit(&points, &asset, fit::REACH * asset.max_error).uncovered
+    };
+    // The one that leaves the most behind.
+    let gone = (0..asset.splats.len()).max_by_key(without).unwrap();
+    asset.splats.remove(gone);
     let holed = text(&directory.path().join("holed.qsplat"));
     format::write_file(holed.as_ref(), &format::encode(&asset).unwrap()).unwrap();
     let (input, page) = (fixture("capped-cylinder.ply"), directory.path().join("holed"));

@@ -107,7 +107,8 @@ impl From<&Visibility> for Depths {
 }
 
 impl Depths {
-    fn at(&self, x: u32, y: u32) -> Option<f64> {
+    /// What a pixel shows.
+    pub(super) fn at(&self, x: u32, y: u32) -> Option<f64> {
         self.depths.get(y as usize * self.size[0] as usize + x as usize).copied().filter(|d| d.is_finite())
     }
 }
@@ -138,7 +139,7 @@ pub fn compare(input: &Depths, splats: &Visibility, rules: &Rules) -> HoleMap {
 }
 
 /// The greatest depth that the nine pixels around one show.
-fn farthest(seen: &Depths, x: u32, y: u32) -> f64 {
+pub(super) fn farthest(seen: &Depths, x: u32, y: u32) -> f64 {
     let around =
         (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| (x, y)));
     let inside = around.filter(|&(x, y)| x < seen.size[0] && y < seen.size[1]);
@@ -160,8 +161,13 @@ impl HoleMap {
 
     /// The pixels with a fault.
     pub fn faults(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let faulty = self.marks.iter().enumerate().filter(|(_, mark)| Mark::FAULTS.contains(mark));
-        faulty.map(|(n, _)| (n as u32 % self.size[0], n as u32 / self.size[0]))
+        self.places(&Mark::FAULTS)
+    }
+
+    /// The pixels with one of some marks.
+    pub fn places<'a>(&'a self, marks: &'a [Mark]) -> impl Iterator<Item = (u32, u32)> + 'a {
+        let marked = self.marks.iter().enumerate().filter(|(_, mark)| marks.contains(mark));
+        marked.map(|(n, _)| (n as u32 % self.size[0], n as u32 / self.size[0]))
     }
 
     /// A picture of the view, pale, with the faults in their colours.

@@ -30,6 +30,7 @@ mod roots;
 mod samples;
 pub mod seen;
 mod segment;
+pub mod sights;
 mod spread;
 pub mod surface;
 mod triangles;

@@ -121,6 +121,13 @@ impl Eye {
         }
     }
 
+    /// The place of the model that the ray through the middle of a pixel passes at a view depth.
+    #[must_use]
+    pub fn place(&self, [x, y]: [u32; 2], depth: f64) -> DVec3 {
+        let across = self.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).at(depth);
+        self.position + self.turn_back(across.extend(depth))
+    }
+
     /// The least and greatest view depth of a sphere around the model's origin, in front of
     /// the near plane and never empty.
     #[must_use]

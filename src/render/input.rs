@@ -7,7 +7,6 @@ use super::constants::{self, MATTE};
 use super::cpu;
 use super::eye::{Eye, Ray};
 use super::facets::Facets;
-use super::intersect::{self, LocalRay};
 use super::mesh_normals::MeshNormals;
 use super::picture::{Picture, Survey, Visibility};
 use super::project::{self, Bound, Prism};
@@ -16,6 +15,7 @@ use super::shade;
 use super::tiles::{Hit, Look, Mix, Scene};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
+use crate::model::intersect::{self, LocalRay};
 use crate::model::mesh::Mesh;
 
 /// What can be drawn besides an asset.

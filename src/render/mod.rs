@@ -17,7 +17,7 @@ pub mod camera;
 pub mod constants;
 pub mod cpu;
 pub mod device;
-mod eye;
+pub mod eye;
 mod facets;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -27,7 +27,6 @@ pub mod picture;
 pub mod settings;
 
 mod composite;
-mod intersect;
 mod partner;
 mod project;
 mod shade;

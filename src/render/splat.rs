@@ -5,13 +5,13 @@ use rayon::prelude::*;
 
 use super::constants::{self, MATTE};
 use super::eye::{Eye, Ray};
-use super::intersect::{self, LocalRay};
 use super::partner::{self, LocalPartner, locals};
 use super::project::{self, Bound, Prism};
 use super::shade;
 use super::tiles::{Hit, Look, Scene};
 use crate::model::asset::Asset;
 use crate::model::clip_curve::{ClipCurve, Conic};
+use crate::model::intersect::{self, LocalRay};
 use crate::model::splat::Splat;
 
 /// A splat in view coordinates, with all that does not change from ray to ray.

@@ -107,6 +107,9 @@ pub struct Choice {
     pub redundant: u64,
     /// Splats saved by moving and merging them.
     pub merged: u64,
+    /// Splats added to close holes that views of a mesh showed.
+    #[serde(default)]
+    pub sealing: u64,
     /// Pieces of surface that only a splat of their own could cover.
     pub last_resorts: u64,
     /// Splats whose points did not determine a whole quadric.

@@ -90,11 +90,15 @@ impl Table {
     }
 
     fn choice(&mut self, choice: &Choice) {
-        let Choice { samples, candidates, redundant, merged, last_resorts, low_rank, lower_bound } = choice;
+        let Choice { samples, candidates, redundant, merged, sealing, last_resorts, low_rank, lower_bound } =
+            choice;
         self.row(
             "chosen from",
             format!("{candidates} candidates over {samples} samples, {redundant} redundant, {merged} merged"),
         );
+        if *sealing > 0 {
+            self.row("added", format!("{sealing} splats that close holes seen from the side"));
+        }
         self.row(
             "fell back",
             format!("{low_rank} fits of lower order, {last_resorts} pieces with a splat of their own"),

@@ -90,6 +90,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         candidates: 20,
         redundant: 3,
         merged: 4,
+        sealing: 5,
         last_resorts: 1,
         low_rank: 2,
         lower_bound,

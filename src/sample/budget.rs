@@ -65,6 +65,22 @@ impl Budget {
         }
     }
 
+    /// A share of all of it.
+    #[must_use]
+    pub fn scaled(&self, share: f64) -> Self {
+        let &Self { fit, line, rim, proud, overhang, pad, clip } = self;
+        let ClipTolerance { outset, miss, edge, clips } = clip;
+        Self {
+            fit: share * fit,
+            line: share * line,
+            rim: share * rim,
+            proud: share * proud,
+            overhang: share * overhang,
+            pad: share * pad,
+            clip: ClipTolerance { outset: share * outset, miss: share * miss, edge: share * edge, clips },
+        }
+    }
+
     /// Whether a quadric may reach over a place that lies so far above it. `slack` multiplies the
     /// distances allowed.
     #[must_use]

@@ -45,6 +45,8 @@ pub struct Choice {
     pub redundant: usize,
     /// Splats saved by moving and merging them, before the choice is made anew.
     pub merged: usize,
+    /// Splats added to close holes that show where the rest is looked at from the side.
+    pub sealing: usize,
     /// Splats whose points did not determine a whole quadric.
     pub low_rank: usize,
 }
@@ -84,6 +86,12 @@ impl Cover {
         self.chosen.iter().map(|&index| self.candidates[index].clone()).collect()
     }
 
+    /// The splats of these.
+    #[must_use]
+    pub fn splats(&self) -> Vec<Splat> {
+        self.chosen.iter().map(|&index| self.candidates[index].splat.clone()).collect()
+    }
+
     /// The pieces that no other splat covers than these, ascending.
     pub(super) fn own(&self, these: &[usize]) -> Vec<u32> {
         let lists = these.iter().map(|&index| self.candidates[index].pieces.as_slice());
@@ -113,11 +121,16 @@ impl Cover {
 
     /// Adds a candidate, and takes it.
     fn choose(&mut self, candidate: Candidate) {
-        for &piece in &candidate.pieces {
+        self.candidates.push(candidate);
+        self.add(self.candidates.len() - 1);
+    }
+
+    /// Takes one more of the candidates.
+    pub(super) fn add(&mut self, index: usize) {
+        for &piece in &self.candidates[index].pieces {
             self.times[piece as usize] += 1;
         }
-        self.chosen.push(self.candidates.len());
-        self.candidates.push(candidate);
+        self.chosen.push(index);
     }
 
     /// Drops splats all of whose pieces others cover, those with the least area first; how many.

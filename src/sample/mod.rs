@@ -17,5 +17,6 @@ pub mod polygon;
 mod rechoose;
 pub mod region;
 pub mod scout;
+mod seal;
 mod set_cover;
 pub mod settle;

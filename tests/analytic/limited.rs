@@ -6,7 +6,7 @@ use qsplat::model::asset::Asset;
 use qsplat::model::clip_curve::ClipCurve;
 use qsplat::model::splat::Kind;
 
-use super::{BUDGETS, RIM, backward, bake, bake_as, distance, mesh, views};
+use super::{BUDGETS, COARSER, RIM, SIDE, backward, bake, bake_as, distance, mesh, views};
 
 fn limited(name: &str, share: f64, shapes: Shapes, clips: Clips) -> Asset {
     let mesh = mesh(name);
@@ -26,7 +26,7 @@ fn limited(name: &str, share: f64, shapes: Shapes, clips: Clips) -> Asset {
     assert!(stray <= RIM, "{name}: splats stray {stray:.3} bounds from the mesh");
     // Coarser budgets are wider than the pixels left aside along the silhouette.
     if share <= BUDGETS[1] {
-        let faults = views::compare(&mesh, &asset).faults();
+        let faults = [SIDE, COARSER].map(|side| views::compare(&mesh, &asset, side).faults()).concat();
         assert!(faults.is_empty(), "{name}: {faults:?}");
     }
     asset

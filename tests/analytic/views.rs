@@ -9,8 +9,8 @@ use qsplat::model::mesh::Mesh;
 use qsplat::render::cpu;
 use qsplat::render::input::{Model, Prepared, Style};
 
-/// Pixels a side.
-const SIDE: u32 = 256;
+/// Pixels a side: rays that no bake looks along, which are those of [`views::SIDE`].
+pub const COARSER: u32 = views::SIDE / 2;
 
 /// What 26 views showed, in pixels.
 #[derive(Default)]
@@ -24,7 +24,16 @@ pub struct Seen {
 impl Seen {
     /// What breaks a promise.
     pub fn faults(&self) -> Vec<String> {
-        [("missing", self.missing), ("extra", self.extra), ("seen through", self.through)]
+        self.told([("missing", self.missing), ("extra", self.extra), ("seen through", self.through)])
+    }
+
+    /// The same, but that splats may be seen beside the input: by as much as a coarse bound allows.
+    pub fn holes(&self) -> Vec<String> {
+        self.told([("missing", self.missing), ("seen through", self.through)])
+    }
+
+    fn told<const N: usize>(&self, counts: [(&str, u64); N]) -> Vec<String> {
+        counts
             .into_iter()
             .filter(|&(_, count)| count > 0)
             .map(|(what, count)| format!("{count} of {} pixels are {what}", self.compared))
@@ -42,14 +51,14 @@ impl fmt::Display for Seen {
     }
 }
 
-/// Compares a bake with its input.
-pub fn compare(mesh: &Mesh, asset: &Asset) -> Seen {
+/// Compares a bake with its input, in pictures of `side` pixels a side.
+pub fn compare(mesh: &Mesh, asset: &Asset, side: u32) -> Seen {
     let mut seen = Seen::default();
     let input = Prepared::new(Model::Mesh(mesh), &Style::default());
     for view in views::views(Model::Mesh(mesh)) {
-        let splats = cpu::visibility(asset, &view.camera, [SIDE; 2]).unwrap();
-        let own = input.visibility(&view.camera, [SIDE; 2]).unwrap();
-        let map = holes::compare(&(&own).into(), &splats, &Rules::new(asset, input.disc(), &view, SIDE));
+        let splats = cpu::visibility(asset, &view.camera, [side; 2]).unwrap();
+        let own = input.visibility(&view.camera, [side; 2]).unwrap();
+        let map = holes::compare(&(&own).into(), &splats, &Rules::new(asset, input.disc(), &view, side));
         seen.compared += map.compared();
         seen.missing += map.count(Mark::Missing);
         seen.extra += map.count(Mark::Extra);

@@ -1,4 +1,4 @@
-//! Where a ray meets a splat's quadric; twin of `intersect.wgsl`.
+//! Where a ray meets a splat's quadric; twin of the renderer's `intersect.wgsl`.
 //!
 //! Splat coordinates, with the ray anchored beside the centre: its parameter is 0 at the
 //! centre's own view depth and grows by 1 for each unit of view depth. So everything that

@@ -1,0 +1,141 @@
+//! Closes the holes that a cover leaves where it is looked at from the side.
+//!
+//! Splats over neighbouring pieces overlap, but where one lies as low as it may and the next as high,
+//! a ray at a slant can pass between them. How far they would have to overlap for no ray to pass grows
+//! without bound towards level rays, so rays that do pass are closed one by one instead.
+
+use rayon::prelude::*;
+
+use super::candidates::Regions;
+use super::cover::{Cover, cost};
+use super::grow::Grower;
+use super::set_cover::SetCover;
+use super::settle::Candidate;
+use crate::model::sight::Sight;
+
+/// Shares of the budget for splats that are to stop a ray: one that may sink by all of it can pass below
+/// a ray that grazes the surface. Below these, rounding takes what is left.
+const NEARER: [f64; 3] = [1.0, 0.5, 0.25];
+
+impl Cover {
+    /// Adds the cheapest splats known that stop some rays, which none of the chosen does once stored, or
+    /// such as grow where the rays meet the surface; how many. A ray that not even these stop stays open.
+    pub fn seal(&mut self, grower: &Grower, regions: &Regions, sights: &[Sight]) -> usize {
+        if sights.is_empty() {
+            return 0;
+        }
+        let mut stopped = self.stopped_by_others(sights);
+        let open = unstopped(&stopped, sights.len());
+        let grown: Vec<Option<Candidate>> =
+            open.par_iter().map(|&sight| grown_at(grower, regions, &sights[sight])).collect();
+        for candidate in grown.into_iter().flatten() {
+            stopped.push((self.candidates.len(), stopped_by(&candidate, sights)));
+            self.candidates.push(candidate);
+        }
+        let added = self.cheapest(&stopped, sights.len());
+        for &index in &added {
+            self.add(index);
+        }
+        added.len()
+    }
+
+    /// Candidates that are not chosen, each with the rays it stops, ascending, if any.
+    fn stopped_by_others(&self, sights: &[Sight]) -> Vec<(usize, Vec<u32>)> {
+        let mut chosen = vec![false; self.candidates.len()];
+        self.chosen.iter().for_each(|&index| chosen[index] = true);
+        let others = self.candidates.par_iter().enumerate().filter(|&(index, _)| !chosen[index]);
+        others
+            .map(|(index, candidate)| (index, stopped_by(candidate, sights)))
+            .filter(|(_, stopped)| !stopped.is_empty())
+            .collect()
+    }
+
+    /// The cheapest candidates found that stop all rays that some do.
+    fn cheapest(&self, stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
+        let costs = stopped.iter().map(|&(index, _)| cost(&self.candidates[index].splat)).collect();
+        let lists: Vec<&[u32]> = stopped.iter().map(|(_, stopped)| stopped.as_slice()).collect();
+        let problem = SetCover::of_decisive(costs, &lists, sights);
+        let all = (0..stopped.len() as u32).collect();
+        problem.cheaper(all).into_iter().map(|at| stopped[at as usize].0).collect()
+    }
+}
+
+/// The rays that a candidate stops, ascending.
+fn stopped_by(candidate: &Candidate, sights: &[Sight]) -> Vec<u32> {
+    let numbered = (0_u32..).zip(sights);
+    numbered.filter(|(_, sight)| sight.is_stopped(&candidate.splat)).map(|(n, _)| n).collect()
+}
+
+/// The rays that no candidate stops.
+fn unstopped(stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
+    let mut open = vec![true; sights];
+    stopped.iter().flat_map(|(_, stopped)| stopped).for_each(|&sight| open[sight as usize] = false);
+    (0..sights).filter(|&sight| open[sight]).collect()
+}
+
+/// A splat grown where a ray meets the surface, the largest that stops the ray.
+fn grown_at(grower: &Grower, regions: &Regions, sight: &Sight) -> Option<Candidate> {
+    let surface = grower.surface;
+    let distance = |piece: u32| surface.middle(piece).distance_squared(sight.at);
+    let nearest = (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+    NEARER.into_iter().find_map(|share| {
+        let nearer = Grower { budget: grower.budget.scaled(share), ..*grower };
+        let grown = regions.with(|region| nearer.grow(nearest, region));
+        grown.filter(|grown| sight.is_stopped(&grown.splat))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analyse::surface::Surface;
+    use crate::fit::clip::Clips;
+    use crate::fit::pose::Shapes;
+    use crate::sample::budget::Budget;
+    use crate::sample::cover::tests::candidate;
+    use glam::{DVec2, DVec3};
+
+    /// Discs of a radius in the plane, at places on the x axis; the first is chosen.
+    fn cover(discs: &[(f64, f64)]) -> Cover {
+        let mut candidates = vec![candidate(&[0]); discs.len()];
+        for (candidate, &(x, radius)) in candidates.iter_mut().zip(discs) {
+            candidate.splat.center = x * DVec3::X;
+            candidate.splat.radii = DVec2::splat(radius);
+        }
+        Cover { candidates, chosen: vec![0], times: vec![1], areas: vec![1.0] }
+    }
+
+    /// Seen from above at places on the x axis.
+    fn sights(places: &[f64]) -> Vec<Sight> {
+        let sight = |&x: &f64| Sight { at: x * DVec3::X, direction: DVec3::NEG_Z, beyond: 0.1 };
+        places.iter().map(sight).collect()
+    }
+
+    fn seal(cover: &mut Cover, places: &[f64]) -> usize {
+        let surface = Surface::default();
+        let grower = Grower {
+            surface: &surface,
+            budget: Budget::new(0.01, Clips::Curved),
+            shapes: Shapes::All,
+            open: &[],
+            overhang: 0.0,
+            round: &|splat| Some(splat.clone()),
+        };
+        cover.seal(&grower, &Regions::new(0), &sights(places))
+    }
+
+    #[test]
+    fn the_fewest_that_stop_all_rays_are_added() {
+        let mut cover = cover(&[(0.0, 1.0), (2.0, 0.2), (3.0, 0.2), (2.5, 0.7), (9.0, 1.0)]);
+        assert_eq!((seal(&mut cover, &[2.0, 3.0]), cover.chosen.as_slice()), (1, &[0, 3][..]));
+        assert_eq!(cover.times, [2]);
+        assert_eq!((seal(&mut cover, &[2.1, 8.5]), cover.chosen.as_slice()), (2, &[0, 3, 1, 4][..]));
+    }
+
+    #[test]
+    fn a_ray_that_nothing_stops_stays_open() {
+        let mut cover = cover(&[(0.0, 1.0), (2.0, 0.2)]);
+        assert_eq!((seal(&mut cover, &[5.0]), seal(&mut cover, &[])), (0, 0));
+        assert_eq!(cover.chosen, [0]);
+    }
+}
