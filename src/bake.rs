@@ -174,8 +174,7 @@ pub fn bake(
         splats,
     };
     clock.stage(progress, "seal");
-    // What partners cut away is not known yet.
-    for _ in 0..if options.clips == Clips::Partners { 0 } else { SEALINGS } {
+    for _ in 0..sealings(options.clips, max_error, diagonal) {
         let sights = looking(&meant.input, &asset(cover.splats()))?;
         let added = cover.seal(&grower, &regions, &sights);
         choice.sealing += added;
@@ -294,9 +293,16 @@ fn piece_length(max_error: f64, diagonal: f64) -> f64 {
     PIECE_SHARE * expected_radius(max_error, diagonal)
 }
 
-/// Holes are looked for and closed so many times: what closes one is cut a little otherwise once it is
+/// How many times holes are looked for and closed: what closes one is cut a little otherwise once it is
 /// stored.
-const SEALINGS: usize = 3;
+fn sealings(clips: Clips, max_error: f64, diagonal: f64) -> usize {
+    // What partners cut away is not known before they are found.
+    if clips == Clips::Partners || max_error > COARSEST_SEALED * diagonal { 0 } else { 3 }
+}
+
+/// A bound coarser than this share of the diagonal is many pixels wide in any view: what is missing
+/// along silhouettes is then what the bound allows, and to fill it in would take many times the splats.
+const COARSEST_SEALED: f64 = 0.01;
 
 /// How far points of a cloud stand for others: over areas as wide as a mesh's pieces are long.
 fn thinning(max_error: f64, diagonal: f64) -> Reach {

@@ -11,7 +11,12 @@ use super::cover::{Cover, cost};
 use super::grow::Grower;
 use super::set_cover::SetCover;
 use super::settle::Candidate;
+use crate::analyse::canonical::mix;
 use crate::model::sight::Sight;
+
+/// Rays for which splats are grown side by side before it is seen which rays are still open. Batches are
+/// of the same size whatever the threads, so that the result is the same too.
+const BATCH: usize = 16;
 
 /// Shares of the budget for splats that are to stop a ray: one that may sink by all of it can pass below
 /// a ray that grazes the surface. Below these, rounding takes what is left.
@@ -25,12 +30,16 @@ impl Cover {
             return 0;
         }
         let mut stopped = self.stopped_by_others(sights);
-        let open = unstopped(&stopped, sights.len());
-        let grown: Vec<Option<Candidate>> =
-            open.par_iter().map(|&sight| grown_at(grower, regions, &sights[sight])).collect();
-        for candidate in grown.into_iter().flatten() {
-            stopped.push((self.candidates.len(), stopped_by(&candidate, sights)));
-            self.candidates.push(candidate);
+        let mut open = unstopped(&stopped, sights.len());
+        while !open.is_empty() {
+            let batch = open.split_off(open.len().saturating_sub(BATCH));
+            let grown: Vec<Option<Candidate>> =
+                batch.par_iter().map(|&sight| grown_at(grower, regions, &sights[sight])).collect();
+            for candidate in grown.into_iter().flatten() {
+                open.retain(|&sight| !sights[sight].is_stopped(&candidate.splat));
+                stopped.push((self.candidates.len(), stopped_by(&candidate, sights)));
+                self.candidates.push(candidate);
+            }
         }
         let added = self.cheapest(&stopped, sights.len());
         for &index in &added {
@@ -66,11 +75,13 @@ fn stopped_by(candidate: &Candidate, sights: &[Sight]) -> Vec<u32> {
     numbered.filter(|(_, sight)| sight.is_stopped(&candidate.splat)).map(|(n, _)| n).collect()
 }
 
-/// The rays that no candidate stops.
+/// The rays that no candidate stops, strewn: those next to each other pass through one hole.
 fn unstopped(stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
     let mut open = vec![true; sights];
     stopped.iter().flat_map(|(_, stopped)| stopped).for_each(|&sight| open[sight as usize] = false);
-    (0..sights).filter(|&sight| open[sight]).collect()
+    let mut open: Vec<usize> = (0..sights).filter(|&sight| open[sight]).collect();
+    open.sort_unstable_by_key(|&sight| mix(sight as u64));
+    open
 }
 
 /// A splat grown where a ray meets the surface, the largest that stops the ray.
