@@ -293,11 +293,14 @@ fn piece_length(max_error: f64, diagonal: f64) -> f64 {
     PIECE_SHARE * expected_radius(max_error, diagonal)
 }
 
-/// How many times holes are looked for and closed: what closes one is cut a little otherwise once it is
-/// stored.
+/// Holes are looked for and closed at most so many times: what closes one is cut a little otherwise once
+/// it is stored.
+const SEALINGS: usize = 3;
+
+/// How many times holes are looked for and closed.
 fn sealings(clips: Clips, max_error: f64, diagonal: f64) -> usize {
     // What partners cut away is not known before they are found.
-    if clips == Clips::Partners || max_error > COARSEST_SEALED * diagonal { 0 } else { 3 }
+    if clips == Clips::Partners || max_error > COARSEST_SEALED * diagonal { 0 } else { SEALINGS }
 }
 
 /// A bound coarser than this share of the diagonal is many pixels wide in any view: what is missing

@@ -54,12 +54,10 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
 ///
 /// A cloud has no surface to look at between its points.
 fn holes(input: &Input, asset: &Asset, sights: &mut Option<Sights>) -> Result<Vec<Sight>> {
-    if matches!(input, Input::Cloud(_)) {
-        return Ok(Vec::new());
-    }
+    let Input::Mesh(mesh) = input else { return Ok(Vec::new()) };
     let known = match sights {
         Some(known) => known,
-        None => sights.insert(Sights::of(model(input))?),
+        None => sights.insert(Sights::of(mesh)?),
     };
     known.open(&format::decode(&format::encode(asset)?, &format::Limits::default())?)
 }

@@ -8,10 +8,14 @@ use super::holes::{self, Depths, Mark, Rules};
 use super::views::{SIDE, View, views};
 use crate::error::Result;
 use crate::model::asset::Asset;
+use crate::model::mesh::Mesh;
 use crate::model::sight::Sight;
 use crate::render::cpu;
 use crate::render::eye::Eye;
 use crate::render::input::{Model, Prepared, Style};
+
+/// A mesh is not drawn as discs.
+const NO_DISC: f64 = 0.0;
 
 /// How far away a mesh lies in the views of [`views`]. Eight bytes a pixel.
 pub struct Sights {
@@ -19,11 +23,12 @@ pub struct Sights {
 }
 
 impl Sights {
-    /// Looks at a mesh, or at a cloud drawn as discs.
+    /// Looks at a mesh.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] for a view that cannot be drawn.
-    pub fn of(model: Model<'_>) -> Result<Self> {
+    pub fn of(mesh: &Mesh) -> Result<Self> {
+        let model = Model::Mesh(mesh);
         let input = Prepared::new(model, &Style::default());
         let drawn = |view: View| {
             let depths = Depths::from(&input.visibility(&view.camera, [SIDE; 2])?);
@@ -49,7 +54,7 @@ impl Sights {
 /// The same for one view.
 fn open(asset: &Asset, view: &View, depths: &Depths) -> Result<Vec<Sight>> {
     let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
-    let rules = Rules::new(asset, 0.0, view, SIDE);
+    let rules = Rules::new(asset, NO_DISC, view, SIDE);
     let map = holes::compare(depths, &splats, &rules);
     let eye = Eye::new(&view.camera, &asset.frame, [SIDE; 2])?;
     let sight = |(x, y): (u32, u32)| {
