@@ -34,18 +34,19 @@ use crate::model::cloud::Cloud;
 use crate::model::frame::Frame;
 use crate::model::mesh::Mesh;
 use crate::model::polyline::Polylines;
-use crate::model::sight::Sight;
+use crate::model::sight::Faults;
 use crate::model::splat::Splat;
 use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
 use crate::sample::lower_bound::LowerBound;
 use crate::sample::scout::Begun;
+use crate::tolerance::COARSEST_CLOSED;
 pub use found_lines::found_lines;
 use growing::Growing;
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
-pub use options::{Colors, DEFAULT_EFFORT, Edges, MaxError, Meaning, Normals, Options};
+pub use options::{Colors, DEFAULT_EFFORT, Edges, Holes, MaxError, Meaning, Normals, Options};
 use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
@@ -110,13 +111,12 @@ pub struct Baked {
 /// Some(s.clone())`.
 pub type Rounding<'a> = dyn Fn(&Splat, f64) -> Option<Splat> + Sync + 'a;
 
-/// The rays on which whoever shows an asset sees holes in it, beside the input or what stands in for it:
-/// those that should be stopped by a splat, and are not. For those who show nothing: `|_, _|
-/// Ok(Vec::new())`.
-pub type Looking<'a> = dyn FnMut(&Input, &Asset) -> Result<Vec<Sight>> + 'a;
+/// The rays on which whoever shows an asset sees more or less of it than of the input, or of what stands
+/// in for that. For those who show nothing: `|_, _| Ok(Faults::default())`.
+pub type Looking<'a> = dyn FnMut(&Input, &Asset) -> Result<Faults> + 'a;
 
-/// Bakes an input to splats that keep the error bound when rounded by `rounding`, and leave no hole for
-/// `looking` but where no splat that keeps the bound closes it.
+/// Bakes an input to splats that keep the error bound when rounded by `rounding`, and show neither hole nor
+/// excess to `looking` but where no splats that keep the bound can do without.
 ///
 /// # Errors
 /// Usage errors for options out of range; input errors for an input without any surface; those of
@@ -174,11 +174,13 @@ pub fn bake(
         splats,
     };
     clock.stage(progress, "seal");
-    for _ in 0..sealings(options.clips, max_error, diagonal) {
-        let sights = looking(&meant.input, &asset(cover.splats()))?;
-        let added = cover.seal(&grower, &regions, &sights);
+    for _ in 0..mendings(options) {
+        let Faults { open, beside } = looking(&meant.input, &asset(cover.splats()))?;
+        let (taken, added) =
+            (cover.withdraw(&grower, &regions, &beside), cover.seal(&grower, &regions, &open));
+        choice.withdrawn += taken;
         choice.sealing += added;
-        if added == 0 {
+        if taken + added == 0 {
             break;
         }
     }
@@ -223,7 +225,8 @@ fn diagonal(positions: &[Vec3]) -> f64 {
     (high.as_dvec3() - low.as_dvec3()).length()
 }
 
-/// The error bound of a bake in model units.
+/// The error bound of a bake in model units: that of the options, or less where [`Holes::Close`] asks for
+/// it.
 ///
 /// # Errors
 /// [`Error::Usage`] for options out of range, and for an input without extent.
@@ -259,7 +262,11 @@ pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
             LEAST_ERROR_SHARE
         )));
     }
-    Ok(error)
+    // Where a cloud's outline lies is a guess.
+    match (input, options.holes) {
+        (Input::Mesh(_), Holes::Close) => Ok(error.min(COARSEST_CLOSED * diagonal)),
+        (Input::Cloud(_), _) | (_, Holes::Leave) => Ok(error),
+    }
 }
 
 /// Bounds below this share of the diagonal drown in the rounding of 32-bit positions.
@@ -293,19 +300,18 @@ fn piece_length(max_error: f64, diagonal: f64) -> f64 {
     PIECE_SHARE * expected_radius(max_error, diagonal)
 }
 
-/// Holes are looked for and closed at most so many times: what closes one is cut a little otherwise once
-/// it is stored.
-const SEALINGS: usize = 3;
+/// Faults are looked for and mended at most so many times: what mends one is cut a little otherwise once
+/// it is stored, and may show elsewhere.
+const MENDINGS: usize = 4;
 
-/// How many times holes are looked for and closed.
-fn sealings(clips: Clips, max_error: f64, diagonal: f64) -> usize {
-    // What partners cut away is not known before they are found.
-    if clips == Clips::Partners || max_error > COARSEST_SEALED * diagonal { 0 } else { SEALINGS }
+/// How many times faults are looked for and mended.
+fn mendings(options: &Options) -> usize {
+    match (options.holes, options.clips) {
+        (Holes::Close, Clips::Curved | Clips::Straight) => MENDINGS,
+        // What partners cut away is not known before they are found.
+        (Holes::Leave, _) | (_, Clips::Partners) => 0,
+    }
 }
-
-/// A bound coarser than this share of the diagonal is many pixels wide in any view: what is missing
-/// along silhouettes is then what the bound allows, and to fill it in would take many times the splats.
-const COARSEST_SEALED: f64 = 0.01;
 
 /// How far points of a cloud stand for others: over areas as wide as a mesh's pieces are long.
 fn thinning(max_error: f64, diagonal: f64) -> Reach {

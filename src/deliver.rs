@@ -9,7 +9,7 @@ use crate::ingest::Input;
 use crate::measure::fit::{REACH, fit, points};
 use crate::measure::sights::Sights;
 use crate::model::asset::Asset;
-use crate::model::sight::Sight;
+use crate::model::sight::Faults;
 use crate::model::splat::Splat;
 use crate::render::input::Model;
 
@@ -33,7 +33,7 @@ pub struct Delivery {
 pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) -> Result<Delivery> {
     let rounding = |splat: &Splat, max_error| Quantizer::new(max_error).snap(splat).ok();
     let mut sights = None;
-    let mut looking = |input: &Input, asset: &Asset| holes(input, asset, &mut sights);
+    let mut looking = |input: &Input, asset: &Asset| faults(input, asset, &mut sights);
     let baked = bake(input, options, &rounding, &mut looking, progress)?;
     let mut clock = Clock::default();
     clock.stage(progress, "encode");
@@ -49,17 +49,17 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     Ok(Delivery { bytes, asset, stages, baked })
 }
 
-/// The rays on which an asset of a mesh shows holes once it is stored; `sights` holds what is known of
-/// the mesh.
+/// The rays on which an asset of a mesh shows more or less than that once it is stored; `sights` holds
+/// what is known of the mesh.
 ///
 /// A cloud has no surface to look at between its points.
-fn holes(input: &Input, asset: &Asset, sights: &mut Option<Sights>) -> Result<Vec<Sight>> {
-    let Input::Mesh(mesh) = input else { return Ok(Vec::new()) };
+fn faults(input: &Input, asset: &Asset, sights: &mut Option<Sights>) -> Result<Faults> {
+    let Input::Mesh(mesh) = input else { return Ok(Faults::default()) };
     let known = match sights {
         Some(known) => known,
         None => sights.insert(Sights::of(mesh)?),
     };
-    known.open(&format::decode(&format::encode(asset)?, &format::Limits::default())?)
+    known.faults(&format::decode(&format::encode(asset)?, &format::Limits::default())?)
 }
 
 /// Measures the fit of the decoded splats and holds it against the bound.

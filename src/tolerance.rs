@@ -50,6 +50,13 @@ pub const EXPORT_SHARE: f64 = 0.1;
 /// does not stand for them, and a thousandth is below the rounding to the file's grids.
 pub const EXPORT_SHARES: std::ops::RangeInclusive<f64> = 1e-3..=1.0;
 
+/// The coarsest bound at which pictures 512 pixels wide need show neither hole nor excess, as a share of
+/// the diagonal of a model that fills them: a pixel, where they show the diagonal at its longest. What
+/// stands out by no more lies within the band along a silhouette.
+///
+/// Splats that may sink farther than they may stand out make files at most 10 % smaller.
+pub const COARSEST_CLOSED: f64 = 1.0 / 800.0;
+
 /// Default dihedral angle, degrees, from which a mesh edge is a feature edge.
 pub const DEFAULT_EDGE_ANGLE: f64 = 40.0;
 

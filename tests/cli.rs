@@ -159,15 +159,37 @@ fn an_absolute_bound_is_in_input_units() {
         "-o",
         &file,
         "--max-error",
-        "0.004",
+        "0.002",
         "--report",
         &report,
         "--quiet",
     ]);
     let report: Report = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
     let bound = report.error.budget * report.model.diagonal;
-    assert!((bound - 0.004).abs() < 1e-7, "{bound}");
+    assert!((bound - 0.002).abs() < 1e-7, "{bound}");
     assert_eq!(report.options.unwrap().max_error_unit, "input");
+}
+
+#[test]
+fn a_coarse_bound_is_narrowed_unless_it_alone_rules() {
+    let directory = tempfile::tempdir().unwrap();
+    let (file, report) = (text(&directory.path().join("a.qsplat")), text(&directory.path().join("a.json")));
+    let input = fixture("blob.ply");
+    let bake = |more: &[&str]| {
+        let common = ["bake", &input, "-o", &file, "--max-error", "1%", "--report", &report];
+        let output = qsplat(&[&common, more].concat());
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        let report: Report = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
+        (report, err(&output))
+    };
+    let check = || code(&qsplat(&["measure", &file, "--against", &input, "--check"]));
+    let (closed, notes) = bake(&[]);
+    assert!(closed.error.budget < 0.002 && notes.contains("--holes leave keeps to it"), "{notes}");
+    assert_eq!(check(), 0);
+    let (left, notes) = bake(&["--holes", "leave"]);
+    assert!((left.error.budget - 0.01).abs() < 1e-9 && notes.is_empty(), "{notes}");
+    assert!(left.file.bytes < closed.file.bytes, "{} bytes for {}", left.file.bytes, closed.file.bytes);
+    assert_eq!(check(), 1, "it stands out by pixels");
 }
 
 #[test]

@@ -117,6 +117,17 @@ pub enum Meaning {
     Auto,
 }
 
+/// What becomes of places where pictures of a mesh's splats show more or less than the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Holes {
+    /// Pictures 512 pixels wide from the 26 directions of the cube show no hole, and nothing beside the
+    /// outline. Bounds that would be wider than a pixel of these are narrowed.
+    #[default]
+    Close,
+    /// The bound alone rules.
+    Leave,
+}
+
 /// How to bake.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -142,6 +153,8 @@ pub struct Options {
     pub shapes: Shapes,
     /// What splats may be cut by; less than all is for comparison, at the same guarantees.
     pub clips: Clips,
+    /// What becomes of holes that pictures of a mesh's splats show.
+    pub holes: Holes,
     /// Whether to find out how little any cover by the same candidates could cost. It changes nothing
     /// about the splats.
     pub lower_bound: bool,
@@ -163,6 +176,7 @@ impl Default for Options {
             colors: Colors::default(),
             shapes: Shapes::default(),
             clips: Clips::default(),
+            holes: Holes::default(),
             lower_bound: false,
         }
     }

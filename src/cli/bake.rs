@@ -6,7 +6,8 @@ use clap::{Args, ValueEnum};
 use qsplat::analyse::mesh_surface::Found;
 use qsplat::bake::meant::Quiet;
 use qsplat::bake::{
-    Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, Made, MaxError, Meaning, Normals, Options, Shapes,
+    Baked, Clips, Clock, Colors, DEFAULT_EFFORT, Edges, Holes, Made, MaxError, Meaning, Normals, Options,
+    Shapes,
 };
 use qsplat::error::Result;
 use qsplat::ingest::Input;
@@ -63,6 +64,9 @@ pub(super) struct Arguments {
     /// the splats across them make them, and only what the bound says of the input holds
     #[arg(long, visible_alias = "clip", value_enum, default_value_t)]
     clips: ClipsArgument,
+    /// What becomes of holes that pictures of a mesh's splats show, and of what shows beside its outline
+    #[arg(long, value_enum, default_value_t)]
+    holes: HolesArgument,
     /// Finds out how little a cover of the surface by the same candidates could cost, and says how far
     /// the chosen one is from that at most, in the table and the report; takes a few percent of the
     /// bake's time, and the file stays the same
@@ -139,6 +143,16 @@ enum ClipsArgument {
     Partners,
 }
 
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum HolesArgument {
+    /// Pictures 512 pixels wide from 26 directions show neither; a bound wider than a pixel of theirs,
+    /// 0.125% of the diagonal, is narrowed to that
+    #[default]
+    Close,
+    /// They stay: the bound alone rules, and coarse ones make smaller files
+    Leave,
+}
+
 pub(super) fn edge_angle(text: &str) -> std::result::Result<f64, String> {
     let degrees: f64 = text.parse().map_err(|_| "give an angle in degrees, such as 40".to_owned())?;
     if degrees > 0.0 && degrees <= 180.0 {
@@ -176,12 +190,32 @@ impl Arguments {
         if let Some(path) = &self.report {
             format::write_file(path, report.json()?.as_bytes())?;
         }
+        if let Some(note) = self.narrowed_note(&report) {
+            notes.note(&note);
+        }
         if let Some(input) = report.input.as_ref().filter(|input| !input.lines_lost.is_empty()) {
             notes.note(&lost_note(&self.edges, &input.lines_lost));
         }
         let text = if quiet { String::new() } else { report.table() };
         // The bake refuses to break its bound; if it ever did, this is a failed check.
         Ok(Outcome { text, passed: report.error.within_budget })
+    }
+
+    /// What to say of a bound that was narrowed.
+    fn narrowed_note(&self, report: &Report) -> Option<String> {
+        let asked = match self.max_error {
+            MaxError::Relative(share) => share,
+            MaxError::Absolute(length) => length / report.model.diagonal,
+        };
+        let kept = report.error.budget;
+        (kept < asked * (1.0 - ROUNDED)).then(|| {
+            format!(
+                "the bound is {:.3}% of the diagonal: {} would show in pictures 512 pixels wide as holes or \
+                 beside the outline; --holes leave keeps to it, for a smaller file",
+                100.0 * kept,
+                self.max_error
+            )
+        })
     }
 
     fn options(&self) -> Result<Options> {
@@ -210,6 +244,10 @@ impl Arguments {
                 ClipsArgument::Curved => Clips::Curved,
                 ClipsArgument::Straight => Clips::Straight,
                 ClipsArgument::Partners => Clips::Partners,
+            },
+            holes: match self.holes {
+                HolesArgument::Close => Holes::Close,
+                HolesArgument::Leave => Holes::Leave,
             },
             lower_bound: self.lower_bound,
         })
@@ -275,9 +313,13 @@ impl Arguments {
             color: name(self.color.to_possible_value()),
             shapes: name(self.shapes.to_possible_value()),
             clips: name(self.clips.to_possible_value()),
+            holes: name(self.holes.to_possible_value()),
         }
     }
 }
+
+/// By how much a share of the diagonal may change on its way to the model's units and back.
+const ROUNDED: f64 = 1e-6;
 
 /// Lines named in a note, at most.
 const MOST_NAMED: usize = 8;
@@ -312,6 +354,7 @@ fn choice(baked: &Baked) -> report::Choice {
         redundant: baked.choice.redundant as u64,
         merged: baked.choice.merged as u64,
         sealing: baked.choice.sealing as u64,
+        withdrawn: baked.choice.withdrawn as u64,
         last_resorts: baked.choice.last_resorts as u64,
         low_rank: baked.choice.low_rank as u64,
         lower_bound: baked.lower_bound,

@@ -17,7 +17,8 @@ use super::{Notes, Outcome};
 /// Writes report.json (docs/sweep-schema.md), report.csv and report.html, a page that needs no
 /// network: curves, tables, stage times, bytes by chunk and pictures. Every budget is baked at
 /// every effort; for comparison also from planes alone and, where splats are cut, with chords
-/// alone, both at the middle effort. A bake that fails is kept as such, and ends in exit code 1.
+/// alone, both at the middle effort. The bound alone rules, as in `bake --holes leave`. A bake that fails
+/// is kept as such, and ends in exit code 1.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Meshes or clouds: PLY, OBJ, OFF, glTF, GLB

@@ -1,6 +1,6 @@
-//! The rays on which an asset shows a hole: what a bake has to close.
+//! The rays on which an asset shows a hole, or anything beside the outline: what a bake has to mend.
 //!
-//! They are the rays of [`super::holes`], so that no hole is left where holes are counted.
+//! They are the rays of [`super::holes`], so that none is left where holes are counted.
 
 use rayon::prelude::*;
 
@@ -9,13 +9,17 @@ use super::views::{SIDE, View, views};
 use crate::error::Result;
 use crate::model::asset::Asset;
 use crate::model::mesh::Mesh;
-use crate::model::sight::Sight;
+use crate::model::sight::{Faults, Sight};
 use crate::render::cpu;
 use crate::render::eye::Eye;
 use crate::render::input::{Model, Prepared, Style};
 
 /// A mesh is not drawn as discs.
 const NO_DISC: f64 = 0.0;
+
+/// Pixels that the bound spans at most in a view whose extra pixels count. A view along a needle magnifies
+/// it, and the bound with it: what stands out there is what the bound allows.
+const WIDEST: f64 = 4.0;
 
 /// How far away a mesh lies in the views of [`views`]. Eight bytes a pixel.
 pub struct Sights {
@@ -37,30 +41,40 @@ impl Sights {
         Ok(Self { views: views(model).into_par_iter().map(drawn).collect::<Result<_>>()? })
     }
 
-    /// The rays of pixels that are missing or seen through, in the order of the views. Views without any
-    /// are not looked at again: splats that are added open no hole.
+    /// The rays of pixels that are missing or seen through, and of those that are extra, in the order of
+    /// the views; extra ones of views that show the bound four pixels wide at most.
     ///
     /// # Errors
     /// As [`Self::of`].
-    pub fn open(&mut self, asset: &Asset) -> Result<Vec<Sight>> {
-        let each = self.views.par_iter().map(|(view, depths)| open(asset, view, depths));
-        let each = each.collect::<Result<Vec<Vec<Sight>>>>()?;
-        let mut holes = each.iter().map(|sights| !sights.is_empty());
-        self.views.retain(|_| holes.next().unwrap_or(false));
-        Ok(each.concat())
+    pub fn faults(&self, asset: &Asset) -> Result<Faults> {
+        let each = self.views.par_iter().map(|(view, depths)| faults(asset, view, depths));
+        let mut all = Faults::default();
+        for Faults { open, beside } in each.collect::<Result<Vec<Faults>>>()? {
+            all.open.extend(open);
+            all.beside.extend(beside);
+        }
+        Ok(all)
     }
 }
 
 /// The same for one view.
-fn open(asset: &Asset, view: &View, depths: &Depths) -> Result<Vec<Sight>> {
+fn faults(asset: &Asset, view: &View, depths: &Depths) -> Result<Faults> {
     let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
     let rules = Rules::new(asset, NO_DISC, view, SIDE);
     let map = holes::compare(depths, &splats, &rules);
     let eye = Eye::new(&view.camera, &asset.frame, [SIDE; 2])?;
-    let sight = |(x, y): (u32, u32)| {
+    let open = |(x, y): (u32, u32)| {
         let own = depths.at(x, y)?;
         let beyond = holes::farthest(depths, x, y) + rules.behind - own;
         Some(Sight { at: eye.place([x, y], own), direction: eye.forward, beyond })
     };
-    Ok(map.places(&[Mark::Missing, Mark::Through]).filter_map(sight).collect())
+    let bound = asset.max_error / view.height * f64::from(SIDE);
+    let beside = |(x, y): (u32, u32)| {
+        let at = eye.place([x, y], splats.at(x, y)?.depth);
+        Some(Sight { at, direction: eye.forward, beyond: f64::INFINITY })
+    };
+    Ok(Faults {
+        open: map.places(&[Mark::Missing, Mark::Through]).filter_map(open).collect(),
+        beside: map.places(&[Mark::Extra]).filter(|_| bound <= WIDEST).filter_map(beside).collect(),
+    })
 }

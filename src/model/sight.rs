@@ -1,4 +1,4 @@
-//! A line of sight to a surface.
+//! Lines of sight to a surface.
 
 use glam::DVec3;
 
@@ -8,12 +8,21 @@ use super::splat::{Kind, Splat};
 /// A ray that meets a surface, and that splats in the surface's stead have to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// Where the ray meets the surface first, model units.
+    /// Where the ray meets the surface first, or where it is stopped if it passes beside that, model units.
     pub at: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// How far beyond that place the ray may go before it is stopped, model units.
+    /// How far beyond that place the ray may go before it counts as not stopped, model units.
     pub beyond: f64,
+}
+
+/// Rays that splats in a surface's stead treat otherwise than the surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Faults {
+    /// Those that meet the surface and that no splat stops.
+    pub open: Vec<Sight>,
+    /// Those that pass beside the surface and that a splat stops, however far beyond.
+    pub beside: Vec<Sight>,
 }
 
 impl Sight {

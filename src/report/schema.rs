@@ -92,8 +92,11 @@ pub struct Options {
     pub color: String,
     /// `all` or `flat`.
     pub shapes: String,
-    /// `curved` or `straight`.
+    /// `curved`, `straight` or `partners`.
     pub clips: String,
+    /// `close` or `leave`.
+    #[serde(default)]
+    pub holes: String,
 }
 
 /// How the splats were chosen, with every case in which a fit fell back to less.
@@ -110,6 +113,9 @@ pub struct Choice {
     /// Splats added to close holes that views of a mesh showed.
     #[serde(default)]
     pub sealing: u64,
+    /// Splats taken out, and replaced, that views of a mesh showed beside its outline.
+    #[serde(default)]
+    pub withdrawn: u64,
     /// Pieces of surface that only a splat of their own could cover.
     pub last_resorts: u64,
     /// Splats whose points did not determine a whole quadric.

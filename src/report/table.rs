@@ -90,20 +90,22 @@ impl Table {
     }
 
     fn choice(&mut self, choice: &Choice) {
-        let Choice { samples, candidates, redundant, merged, sealing, last_resorts, low_rank, lower_bound } =
-            choice;
+        let Choice { samples, candidates, redundant, merged, last_resorts, low_rank, .. } = choice;
         self.row(
             "chosen from",
             format!("{candidates} candidates over {samples} samples, {redundant} redundant, {merged} merged"),
         );
-        if *sealing > 0 {
-            self.row("added", format!("{sealing} splats that close holes seen from the side"));
+        if choice.sealing > 0 {
+            self.row("added", format!("{} splats that close holes seen from the side", choice.sealing));
+        }
+        if choice.withdrawn > 0 {
+            self.row("replaced", format!("{} splats that showed beside the outline", choice.withdrawn));
         }
         self.row(
             "fell back",
             format!("{low_rank} fits of lower order, {last_resorts} pieces with a splat of their own"),
         );
-        if let Some(bound) = lower_bound {
+        if let Some(bound) = &choice.lower_bound {
             self.lower_bound(bound);
         }
     }

@@ -77,6 +77,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         color: "auto".into(),
         shapes: "all".into(),
         clips: "curved".into(),
+        holes: "close".into(),
     };
     let stage = |name: &str, wall_seconds| StageTime {
         name: name.into(),
@@ -91,6 +92,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         redundant: 3,
         merged: 4,
         sealing: 5,
+        withdrawn: 2,
         last_resorts: 1,
         low_rank: 2,
         lower_bound,

@@ -13,6 +13,7 @@ use super::moves::improve;
 use super::polygon;
 use super::region::Region;
 use super::settle::Candidate;
+use crate::model::sight::Sight;
 use crate::model::splat::{Kind, Splat};
 use rayon::prelude::*;
 
@@ -47,11 +48,14 @@ pub struct Choice {
     pub merged: usize,
     /// Splats added to close holes that show where the rest is looked at from the side.
     pub sealing: usize,
+    /// Splats taken out, and others put in their places, because they show beside the outline.
+    pub withdrawn: usize,
     /// Splats whose points did not determine a whole quadric.
     pub low_rank: usize,
 }
 
 /// Candidates, and those of them that are chosen to cover every piece.
+#[derive(Default)]
 pub struct Cover {
     pub(super) candidates: Vec<Candidate>,
     /// Indices of candidates.
@@ -60,6 +64,8 @@ pub struct Cover {
     pub(super) times: Vec<u32>,
     /// The area of each piece.
     pub(super) areas: Vec<f64>,
+    /// Rays that no splat may stop.
+    pub(super) beside: Vec<Sight>,
 }
 
 /// Chooses from the candidates, adding to them what no candidate covers.
@@ -69,7 +75,7 @@ pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, eff
     let mut choice = Choice::default();
     let mut times = vec![0_u32; areas.len()];
     let chosen = greedy(&candidates, &areas, &mut times);
-    let mut cover = Cover { candidates, chosen, times, areas };
+    let mut cover = Cover { candidates, chosen, times, areas, beside: Vec::new() };
     cover_rest(grower, regions, &mut cover, &mut choice);
     choice.candidates = cover.candidates.len();
     choice.redundant = cover.drop_redundant();
@@ -258,8 +264,13 @@ pub(super) mod tests {
     #[test]
     fn what_splats_alone_cover_is_what_their_successor_must() {
         let candidates = vec![candidate(&[0, 1, 2]), candidate(&[2, 3]), candidate(&[1, 3, 4])];
-        let mut cover =
-            Cover { candidates, chosen: vec![0, 1, 2], times: vec![1, 2, 2, 2, 1], areas: vec![1.0; 5] };
+        let mut cover = Cover {
+            candidates,
+            chosen: vec![0, 1, 2],
+            times: vec![1, 2, 2, 2, 1],
+            areas: vec![1.0; 5],
+            ..Cover::default()
+        };
         assert_eq!((cover.own(&[0]), cover.own(&[1]), cover.own(&[0, 1])), (vec![0], vec![], vec![0, 2]));
         assert!(cover.serves(&[0, 1], &candidate(&[0, 2])) && !cover.serves(&[0, 1], &candidate(&[0, 1])));
         cover.replace(&[0, 1], candidate(&[0, 2]));

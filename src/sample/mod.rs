@@ -1,5 +1,6 @@
 //! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
-//! became redundant, move and merge what is left, choose anew from all that were grown.
+//! became redundant, move and merge what is left, choose anew from all that were grown, mend what shows
+//! from the side.
 
 pub mod backing;
 pub mod budget;
@@ -20,3 +21,4 @@ pub mod scout;
 mod seal;
 mod set_cover;
 pub mod settle;
+mod withdraw;

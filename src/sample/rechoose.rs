@@ -41,7 +41,7 @@ mod tests {
     fn cover(lists: &[&[u32]], chosen: &[usize], pieces: usize) -> Cover {
         let candidates = lists.iter().map(|pieces| candidate(pieces)).collect();
         let mut cover =
-            Cover { candidates, chosen: Vec::new(), times: vec![0; pieces], areas: vec![1.0; pieces] };
+            Cover { candidates, times: vec![0; pieces], areas: vec![1.0; pieces], ..Cover::default() };
         cover.take(chosen.to_vec());
         cover
     }

@@ -7,9 +7,8 @@
 use rayon::prelude::*;
 
 use super::candidates::Regions;
-use super::cover::{Cover, cost};
+use super::cover::Cover;
 use super::grow::Grower;
-use super::set_cover::SetCover;
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
 use crate::model::sight::Sight;
@@ -34,7 +33,7 @@ impl Cover {
         while !open.is_empty() {
             let batch = open.split_off(open.len().saturating_sub(BATCH));
             let grown: Vec<Option<Candidate>> =
-                batch.par_iter().map(|&sight| grown_at(grower, regions, &sights[sight])).collect();
+                batch.par_iter().map(|&sight| self.grown_at(grower, regions, &sights[sight])).collect();
             for candidate in grown.into_iter().flatten() {
                 open.retain(|&sight| !sights[sight].is_stopped(&candidate.splat));
                 stopped.push((self.candidates.len(), stopped_by(&candidate, sights)));
@@ -55,17 +54,18 @@ impl Cover {
         let others = self.candidates.par_iter().enumerate().filter(|&(index, _)| !chosen[index]);
         others
             .map(|(index, candidate)| (index, stopped_by(candidate, sights)))
-            .filter(|(_, stopped)| !stopped.is_empty())
+            .filter(|(index, stopped)| !stopped.is_empty() && self.is_inside(&self.candidates[*index]))
             .collect()
     }
 
-    /// The cheapest candidates found that stop all rays that some do.
-    fn cheapest(&self, stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
-        let costs = stopped.iter().map(|&(index, _)| cost(&self.candidates[index].splat)).collect();
-        let lists: Vec<&[u32]> = stopped.iter().map(|(_, stopped)| stopped.as_slice()).collect();
-        let problem = SetCover::of_decisive(costs, &lists, sights);
-        let all = (0..stopped.len() as u32).collect();
-        problem.cheaper(all).into_iter().map(|at| stopped[at as usize].0).collect()
+    /// A splat grown where a ray meets the surface, the largest that stops the ray.
+    fn grown_at(&self, grower: &Grower, regions: &Regions, sight: &Sight) -> Option<Candidate> {
+        let surface = grower.surface;
+        let distance = |piece: u32| surface.middle(piece).distance_squared(sight.at);
+        let nearest =
+            (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+        let serves = |grown: &Candidate| sight.is_stopped(&grown.splat) && self.is_inside(grown);
+        grown_within(grower, regions, nearest, &NEARER, serves)
     }
 }
 
@@ -84,15 +84,17 @@ fn unstopped(stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
     open
 }
 
-/// A splat grown where a ray meets the surface, the largest that stops the ray.
-fn grown_at(grower: &Grower, regions: &Regions, sight: &Sight) -> Option<Candidate> {
-    let surface = grower.surface;
-    let distance = |piece: u32| surface.middle(piece).distance_squared(sight.at);
-    let nearest = (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-    NEARER.into_iter().find_map(|share| {
+/// The splat grown over a piece that serves, within the first of some shares of the budget.
+pub(super) fn grown_within(
+    grower: &Grower,
+    regions: &Regions,
+    piece: u32,
+    shares: &[f64],
+    serves: impl Fn(&Candidate) -> bool,
+) -> Option<Candidate> {
+    shares.iter().find_map(|&share| {
         let nearer = Grower { budget: grower.budget.scaled(share), ..*grower };
-        let grown = regions.with(|region| nearer.grow(nearest, region));
-        grown.filter(|grown| sight.is_stopped(&grown.splat))
+        regions.with(|region| nearer.grow(piece, region)).filter(&serves)
     })
 }
 
@@ -113,7 +115,7 @@ mod tests {
             candidate.splat.center = x * DVec3::X;
             candidate.splat.radii = DVec2::splat(radius);
         }
-        Cover { candidates, chosen: vec![0], times: vec![1], areas: vec![1.0] }
+        Cover { candidates, chosen: vec![0], times: vec![1], areas: vec![1.0], ..Cover::default() }
     }
 
     /// Seen from above at places on the x axis.

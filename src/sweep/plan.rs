@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::bake::{Clips, DEFAULT_EFFORT, MaxError, Options, Shapes};
+use crate::bake::{Clips, DEFAULT_EFFORT, Holes, MaxError, Options, Shapes};
 use crate::error::{Error, Result};
 
 /// What a sweep goes through, for each of its inputs.
@@ -88,7 +88,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The options of the bake, but for the feature lines.
+    /// The options of the bake, but for the feature lines. The bound alone rules: it is what is swept.
     #[must_use]
     pub fn options(&self) -> Options {
         Options {
@@ -96,6 +96,7 @@ impl Setting {
             effort: self.effort,
             shapes: if self.variant == Variant::Flat { Shapes::Flat } else { Shapes::All },
             clips: if self.variant == Variant::Straight { Clips::Straight } else { Clips::Curved },
+            holes: Holes::Leave,
             ..Options::default()
         }
     }

@@ -24,16 +24,7 @@ pub struct Seen {
 impl Seen {
     /// What breaks a promise.
     pub fn faults(&self) -> Vec<String> {
-        self.told([("missing", self.missing), ("extra", self.extra), ("seen through", self.through)])
-    }
-
-    /// The same, but that splats may be seen beside the input: by as much as a coarse bound allows.
-    pub fn holes(&self) -> Vec<String> {
-        self.told([("missing", self.missing), ("seen through", self.through)])
-    }
-
-    fn told<const N: usize>(&self, counts: [(&str, u64); N]) -> Vec<String> {
-        counts
+        [("missing", self.missing), ("extra", self.extra), ("seen through", self.through)]
             .into_iter()
             .filter(|&(_, count)| count > 0)
             .map(|(what, count)| format!("{count} of {} pixels are {what}", self.compared))
