@@ -3,17 +3,18 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::canonical;
+use super::{back_to_back, canonical};
 use crate::model::mesh::Mesh;
 
 /// A mesh whose vertices are distinct positions in canonical order.
 #[derive(Clone, Debug, Default)]
 pub struct Welded {
-    /// Distinct positions along the Morton curve.
+    /// Distinct positions along the Morton curve; behind them once more those of sheets that lie back to
+    /// back with others.
     pub positions: Vec<Vec3>,
     /// Colours, the mean over the vertices joined; or empty.
     pub colors: Vec<[u8; 3]>,
-    /// Triangles with the least index first, sorted, none degenerate, none repeated.
+    /// Triangles with the least index first, sorted but for those sheets, none degenerate, none repeated.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -25,7 +26,8 @@ impl Welded {
     }
 }
 
-/// Welds a mesh; degenerate and repeated triangles and unused vertices disappear.
+/// Welds a mesh; degenerate and repeated triangles and unused vertices disappear, and sheets that lie back
+/// to back are parted.
 #[must_use]
 pub fn weld(mesh: &Mesh) -> Welded {
     weld_shaded(mesh).0
@@ -62,6 +64,7 @@ pub fn weld_shaded(mesh: &Mesh) -> (Welded, Vec<[Vec3; 3]>) {
     let corners = canonical_triangles(mesh, &place);
     welded.triangles = corners.iter().map(|&(places, _)| places).collect();
     drop_unused(&mut welded);
+    back_to_back::part(&mut welded);
     let normals = match cloud.normals.is_empty() {
         true => Vec::new(),
         false => corners.iter().map(|(_, corners)| corners.map(|v| cloud.normals[v as usize])).collect(),

@@ -33,6 +33,12 @@ pub fn cube() -> Input {
     mesh(&points, faces)
 }
 
+/// A square from both sides.
+pub fn sheet() -> Input {
+    let corners = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 0.0)];
+    mesh(&corners, vec![[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]])
+}
+
 /// Five half planes around one edge.
 fn fan() -> Input {
     let mut points = vec![p(0.0, 0.0, 0.0), p(0.0, 0.0, 1.0)];
@@ -135,6 +141,7 @@ pub fn all() -> Vec<(&'static str, Input)> {
         ("faces without area", mesh(&line, vec![[0, 1, 2], [1, 3, 5], [2, 3, 4]])),
         ("a sliver beside a face", mesh(&bent, vec![[0, 1, 2], [1, 0, 3]])),
         ("one face from both sides", mesh(&square[..3], vec![[0, 1, 2], [0, 2, 1]])),
+        ("a square from both sides", sheet()),
         ("one face twice", mesh(&square[..3], vec![[0, 1, 2], [1, 2, 0]])),
         ("five faces on one edge", fan()),
         ("a Moebius strip", moebius()),
