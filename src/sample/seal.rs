@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::candidates::Regions;
 use super::cover::Cover;
 use super::grow::Grower;
+use super::region::Region;
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
 use crate::model::sight::Sight;
@@ -64,8 +65,8 @@ impl Cover {
         let distance = |piece: u32| surface.middle(piece).distance_squared(sight.at);
         let nearest =
             (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-        let serves = |grown: &Candidate| sight.is_stopped(&grown.splat) && self.is_inside(grown);
-        grown_within(grower, regions, nearest, &NEARER, serves)
+        let serves = |made: &Candidate| sight.is_stopped(&made.splat) && self.is_inside(made);
+        made_within(&NEARER, grower, regions, (grown, nearest), serves)
     }
 }
 
@@ -84,17 +85,25 @@ fn unstopped(stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
     open
 }
 
-/// The splat grown over a piece that serves, within the first of some shares of the budget.
-pub(super) fn grown_within(
+/// The largest splat around a piece: [`Grower::grow`].
+pub(super) fn grown(grower: &Grower<'_>, piece: u32, region: &mut Region) -> Option<Candidate> {
+    grower.grow(piece, region)
+}
+
+/// A way to make a splat over a piece: [`grown`] or [`polygon::over`](super::polygon::over).
+pub(super) type Make = fn(&Grower<'_>, u32, &mut Region) -> Option<Candidate>;
+
+/// The splat made over a piece that serves, within the first of some shares of the budget.
+pub(super) fn made_within(
+    shares: &[f64],
     grower: &Grower,
     regions: &Regions,
-    piece: u32,
-    shares: &[f64],
+    (make, piece): (Make, u32),
     serves: impl Fn(&Candidate) -> bool,
 ) -> Option<Candidate> {
     shares.iter().find_map(|&share| {
         let nearer = Grower { budget: grower.budget.scaled(share), ..*grower };
-        regions.with(|region| nearer.grow(piece, region)).filter(&serves)
+        regions.with(|region| make(&nearer, piece, region)).filter(&serves)
     })
 }
 

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use super::candidates::Regions;
 use super::cover::{Cover, cost};
 use super::grow::Grower;
-use super::seal::grown_within;
+use super::polygon;
+use super::seal::{Make, grown, made_within};
 use super::set_cover::SetCover;
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
@@ -23,6 +24,10 @@ const NEARER: [f64; 9] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.35, 0.25, 0.125];
 /// more is about as long as the outline itself.
 const MOST_BATCHES: usize = 64;
 
+/// Pieces that get splats of their own, at most, where nothing larger can be grown: more of them cost
+/// too much for what little shows.
+const MOST_LEFT: usize = 16;
+
 impl Cover {
     /// Takes out the chosen splats that stop rays which pass beside the surface, and adds the cheapest
     /// known or grown that cover their pieces and stop no such ray, now or before; how many are out. Those
@@ -37,8 +42,12 @@ impl Cover {
         let bare = self.own(&shown);
         self.drop_chosen(&shown, kept);
         let mut offers = self.offers(&bare);
-        self.grow_at(grower, regions, &middles(&self.candidates, &shown, grower), &bare, &mut offers);
-        self.grow_over(grower, regions, &bare, &mut offers);
+        let middles = middles(&self.candidates, &shown, grower);
+        self.offer_at(&middles, grown, grower, regions, &bare, &mut offers);
+        let left = self.offer_over(grower, regions, &bare, &mut offers);
+        if left.len() <= MOST_LEFT {
+            self.offer_at(&left, polygon::over, grower, regions, &bare, &mut offers);
+        }
         for index in self.cheapest(&offers, self.areas.len()) {
             self.add(index);
         }
@@ -70,46 +79,52 @@ impl Cover {
             .collect()
     }
 
-    /// Adds candidates grown over the pieces that none of the offers covers, as far as there are any.
-    fn grow_over(
+    /// Offers candidates grown over the pieces that none of the offers covers; those that are left.
+    fn offer_over(
         &mut self,
         grower: &Grower,
         regions: &Regions,
         bare: &[u32],
         offers: &mut Vec<(usize, Vec<u32>)>,
-    ) {
+    ) -> Vec<u32> {
         let mut covered: Vec<u32> = offers.iter().flat_map(|(_, pieces)| pieces).copied().collect();
         covered.sort_unstable();
         let mut open: Vec<u32> =
             bare.iter().copied().filter(|piece| covered.binary_search(piece).is_err()).collect();
         // Strewn: those beside each other are covered by one splat.
         open.sort_unstable_by_key(|&piece| mix(u64::from(piece)));
+        let mut left = Vec::new();
         for _ in 0..MOST_BATCHES {
             let batch = open.split_off(open.len().saturating_sub(BATCH));
             let before = self.candidates.len();
-            self.grow_at(grower, regions, &batch, bare, offers);
-            let grown = &self.candidates[before..];
+            self.offer_at(&batch, grown, grower, regions, bare, offers);
+            let made = &self.candidates[before..];
+            let is_left = |piece: &u32| !made.iter().any(|one| one.pieces.binary_search(piece).is_ok());
+            left.extend(batch.into_iter().filter(is_left));
+            open.retain(is_left);
             // They are strewn: where all of them fail, the others would.
-            if grown.is_empty() {
+            if made.is_empty() {
                 break;
             }
-            open.retain(|piece| !grown.iter().any(|one| one.pieces.binary_search(piece).is_ok()));
         }
+        left.extend(open);
+        left
     }
 
-    /// Adds candidates grown over some pieces.
-    fn grow_at(
+    /// Offers candidates made over some pieces.
+    fn offer_at(
         &mut self,
+        pieces: &[u32],
+        make: Make,
         grower: &Grower,
         regions: &Regions,
-        pieces: &[u32],
         bare: &[u32],
         offers: &mut Vec<(usize, Vec<u32>)>,
     ) {
         let inside = |candidate: &Candidate| self.is_inside(candidate);
-        let grow = |&piece: &u32| grown_within(grower, regions, piece, &NEARER, inside);
-        let grown: Vec<Option<Candidate>> = pieces.par_iter().map(grow).collect();
-        for candidate in grown.into_iter().flatten() {
+        let make = |&piece: &u32| made_within(&NEARER, grower, regions, (make, piece), inside);
+        let made: Vec<Option<Candidate>> = pieces.par_iter().map(make).collect();
+        for candidate in made.into_iter().flatten() {
             offers.push((self.candidates.len(), common(&candidate.pieces, bare)));
             self.candidates.push(candidate);
         }
