@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
+use super::bends::bends;
 use super::chains;
 use super::creases::creases;
 use super::edges::Edges;
 use super::given_lines::{self, Matched, Meant};
 use super::line_ends::carried;
-use super::refine::{Fineness, Refined, refine};
+use super::refine::{Fineness, Refined, Side, refine};
 use super::split::split;
 use super::surface::Surface;
 use super::weld::{Welded, weld};
@@ -47,12 +48,30 @@ pub struct Found {
 /// How a mesh becomes a surface.
 #[derive(Clone, Copy)]
 pub struct Making<'a> {
-    /// Pieces are no longer than this, model units, unless that takes more than `most` of them.
+    /// Pieces are no longer than this, model units, unless that takes more than `most` of them; up to
+    /// [`FLATTER`] times as long inside flat faces.
     pub longest: f64,
     /// The most pieces that refinement makes.
     pub most: usize,
     /// Which feature edges that are found are worth a cut.
     pub worth: Worth<'a>,
+}
+
+/// Sides of pieces on flat faces may be up to this many times as long: a plane reaches farther there than
+/// splats may be expected to elsewhere. Not so beside lines, where splats are grown from pieces that fit
+/// between them: a gear whose teeth have pieces four times as long takes a fifth more bytes.
+pub const FLATTER: f64 = 4.0;
+
+impl Making<'_> {
+    /// How long a side may be of a face that bends so much, in 1 / model units.
+    fn longest(&self, bend: f64, at_line: bool) -> f64 {
+        if at_line {
+            return self.longest;
+        }
+        // A plane strays by the bound where half the curvature times the square of the way does.
+        let plane = (2.0 * self.worth.max_error / bend).sqrt();
+        self.longest * (plane / self.worth.reach).clamp(1.0, FLATTER)
+    }
 }
 
 /// A mesh that is welded and refined, and which of its edges are feature edges.
@@ -69,7 +88,9 @@ impl Marked {
     pub fn of(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Self, Found) {
         let welded = weld(mesh);
         let (marked, mut found) = mark(&welded, features);
-        let too_long = |_: u32, way: DVec3| way.length() > making.longest;
+        let bends = bends(&welded, &marked);
+        let too_long =
+            |side: &Side| side.way.length() > making.longest(bends[side.face as usize], side.at_line);
         let Refined { welded, mut marked, .. } =
             refine(welded, marked, &Fineness { too_long: &too_long, most: making.most });
         if let Features::Sharp { shortest, .. } = features {

@@ -3,6 +3,7 @@
 //! Both kinds of input end as one [`surface::Surface`], so that nothing below asks which it was.
 
 mod back_to_back;
+mod bends;
 mod blocks;
 pub mod canonical;
 pub mod chains;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::edges::{Edge, Edges};
+use super::edges::{Edge, Edges, Half};
 use super::surface::NONE;
 use super::weld::Welded;
 
@@ -12,11 +12,21 @@ const ROUNDS: usize = 12;
 
 /// Which edges are to be halved.
 pub struct Fineness<'a> {
-    /// Whether an edge, given as the way along it (model units), is too long for a triangle beside it,
-    /// given as the number of the one that it is a part of.
-    pub too_long: &'a (dyn Fn(u32, DVec3) -> bool + Sync),
+    /// Whether a side is too long for its triangle.
+    pub too_long: &'a (dyn Fn(&Side) -> bool + Sync),
     /// No halving makes more triangles than this.
     pub most: usize,
+}
+
+/// A side of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    /// The number of the triangle that its own is a part of.
+    pub face: u32,
+    /// The way along it, model units.
+    pub way: DVec3,
+    /// Whether it ends on a feature edge or where the surface does.
+    pub at_line: bool,
 }
 
 /// A mesh whose edges are short enough.
@@ -40,9 +50,12 @@ pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>
     let mut part_of: Vec<u32> = (0..welded.triangles.len() as u32).collect();
     for _ in 0..ROUNDS {
         let edges = Edges::of(&welded.triangles);
+        let on_line = on_line(&welded, &edges, &marked);
         let long = |edge: &Edge| {
             let [a, b] = welded.places(edge.ends);
-            edges.halves(edge).iter().any(|half| (fineness.too_long)(part_of[half.face as usize], b - a))
+            let at_line = edge.ends.iter().any(|&end| on_line[end as usize]);
+            let side = |half: &Half| Side { face: part_of[half.face as usize], way: b - a, at_line };
+            edges.halves(edge).iter().any(|half| (fineness.too_long)(&side(half)))
         };
         let long: Vec<bool> = edges.edges.par_iter().map(long).collect();
         let split = long.iter().filter(|long| **long).count();
@@ -58,6 +71,14 @@ pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>
         marked = halve(&mut welded, &edges, &middles, &marked);
     }
     Refined { welded, marked, part_of }
+}
+
+/// Which vertices lie on feature edges or where the surface ends.
+fn on_line(welded: &Welded, edges: &Edges, marked: &[bool]) -> Vec<bool> {
+    let mut on_line = vec![false; welded.positions.len()];
+    let lines = edges.edges.iter().zip(marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
+    lines.flat_map(|(edge, _)| edge.ends).for_each(|end| on_line[end as usize] = true);
+    on_line
 }
 
 /// Splits the triangles at the middles of their edges, given for each edge or [`NONE`]; which edges
@@ -169,7 +190,7 @@ mod tests {
             ];
             let start = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
             let whole = area(&start);
-            let too_long = |_: u32, way: DVec3| way.length() > 0.11;
+            let too_long = |side: &Side| side.way.length() > 0.11;
             let fineness = Fineness { too_long: &too_long, most: 100_000 };
             let Refined { welded: fine, marked, .. } = refine(start, vec![true, false, false], &fineness);
             assert!((area(&fine) - whole).abs() < 1e-6 * whole);
@@ -184,5 +205,23 @@ mod tests {
                 edges.edges.iter().zip(&marked).filter(|(_, m)| **m).map(|(e, _)| length(e)).sum();
             assert!((lines - f64::from(corners[0].hypot(corners[1]))).abs() < 1e-5);
         }
+    }
+
+    #[test]
+    fn sides_beside_lines_can_be_told_from_others() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
+        let start = Welded { positions, triangles: vec![[0, 1, 3], [0, 3, 2]], ..Welded::default() };
+        let too_long = |side: &Side| side.way.length() > if side.at_line { 0.1 } else { 0.4 };
+        let fineness = Fineness { too_long: &too_long, most: 100_000 };
+        let welded = refine(start, vec![false; 5], &fineness).welded;
+        let on_rim = |at: DVec3| at.x * (1.0 - at.x) * at.y * (1.0 - at.y) == 0.0;
+        let (rim, inside): (Vec<_>, Vec<_>) = Edges::of(&welded.triangles)
+            .edges
+            .iter()
+            .map(|edge| welded.places(edge.ends))
+            .partition(|ends| ends.iter().any(|&end| on_rim(end)));
+        let longest = |sides: &[[DVec3; 2]]| sides.iter().map(|[a, b]| a.distance(*b)).fold(0.0, f64::max);
+        assert!(longest(&rim) <= 0.1, "{}", longest(&rim));
+        assert!((0.2..=0.4).contains(&longest(&inside)), "{}", longest(&inside));
     }
 }

@@ -1,10 +1,8 @@
 //! How splats grow, over whatever surface; what is begun over a mesh before its pieces are small enough.
 
-use glam::DVec3;
-
 use super::{MOST_PIECES, Progress};
 use crate::analyse::mesh_surface::Marked;
-use crate::analyse::refine::Fineness;
+use crate::analyse::refine::{Fineness, Side};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::Clips;
 use crate::fit::pose::Shapes;
@@ -47,7 +45,7 @@ impl Growing<'_> {
         let open = self.open_sides(&surface);
         let (grower, regions) = (self.over(&surface, &open), Regions::new(surface.points.len()));
         let scouted = scout(&grower, &regions, |done| progress.advance(done as u64, total));
-        let too_long = |piece: u32, way: DVec3| scouted.is_long(piece, way);
+        let too_long = |side: &Side| scouted.is_long(side.face, side.way);
         let (finer, part_of) = marked.refined(&Fineness { too_long: &too_long, most: MOST_PIECES });
         let surface = if part_of.len() > surface.pieces.len() { finer.surface() } else { surface };
         (surface, scouted.begun(&part_of))
