@@ -108,7 +108,7 @@ pub(super) fn made_within(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::analyse::surface::Surface;
     use crate::fit::clip::Clips;
@@ -116,6 +116,12 @@ mod tests {
     use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
     use glam::{DVec2, DVec3};
+
+    /// Grows nothing, since nothing can be stored.
+    pub(in crate::sample) fn fruitless(surface: &Surface) -> Grower<'_> {
+        let budget = Budget::new(0.01, Clips::Curved);
+        Grower { surface, budget, shapes: Shapes::All, open: &[], overhang: 0.0, round: &|_| None }
+    }
 
     /// Discs of a radius in the plane, at places on the x axis; the first is chosen.
     fn cover(discs: &[(f64, f64)]) -> Cover {
@@ -135,15 +141,7 @@ mod tests {
 
     fn seal(cover: &mut Cover, places: &[f64]) -> usize {
         let surface = Surface::default();
-        let grower = Grower {
-            surface: &surface,
-            budget: Budget::new(0.01, Clips::Curved),
-            shapes: Shapes::All,
-            open: &[],
-            overhang: 0.0,
-            round: &|splat| Some(splat.clone()),
-        };
-        cover.seal(&grower, &Regions::new(0), &sights(places))
+        cover.seal(&fruitless(&surface), &Regions::new(0), &sights(places))
     }
 
     #[test]

@@ -169,10 +169,8 @@ fn common(some: &[u32], others: &[u32]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::analyse::surface::{NONE, Rows, Surface};
-    use crate::fit::clip::Clips;
-    use crate::fit::pose::Shapes;
-    use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
+    use crate::sample::seal::tests::fruitless;
     use glam::{DVec2, DVec3, Vec3};
 
     /// Discs in the plane at places on the x axis with radii, over some pieces; the first `chosen` are.
@@ -196,7 +194,7 @@ mod tests {
         places.iter().map(ray).collect()
     }
 
-    /// Where nothing can be grown, since nothing can be stored.
+    /// Where nothing can be grown.
     fn withdraw(cover: &mut Cover, places: &[f64]) -> usize {
         let surface = Surface {
             points: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
@@ -208,15 +206,7 @@ mod tests {
             border_prev: vec![NONE; 3],
             ..Surface::default()
         };
-        let grower = Grower {
-            surface: &surface,
-            budget: Budget::new(0.01, Clips::Curved),
-            shapes: Shapes::All,
-            open: &[],
-            overhang: 0.0,
-            round: &|_| None,
-        };
-        cover.withdraw(&grower, &Regions::new(3), &beside(places))
+        cover.withdraw(&fruitless(&surface), &Regions::new(3), &beside(places))
     }
 
     #[test]
