@@ -14,8 +14,7 @@ pub fn bends(welded: &Welded, marked: &[bool]) -> Vec<f64> {
         let Some((a, b)) = edges.pair(edge) else { continue };
         let [normal, other] = [a, b].map(|half| normals[half.face as usize]);
         let angle = libm::atan2(normal.cross(other).length(), normal.dot(other));
-        let height =
-            [a, b].map(|half| height(welded, half.face, edge)).into_iter().fold(f64::INFINITY, f64::min);
+        let height = height(welded, a.face, edge).min(height(welded, b.face, edge));
         // Over a face without area there is no telling.
         let bend = if angle > 0.0 { angle / height } else { 0.0 };
         for half in [a, b] {

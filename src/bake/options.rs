@@ -120,8 +120,9 @@ pub enum Meaning {
 /// What becomes of places where pictures of a mesh's splats show more or less than the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Holes {
-    /// Pictures 512 pixels wide from the 26 directions of the cube show no hole, and nothing beside the
-    /// outline. Bounds that would be wider than a pixel of these are narrowed.
+    /// Holes that pictures 512 pixels wide from the 26 directions of the cube show, and what they show
+    /// beside the outline, are mended as far as splats within the bound can do without. A bound wider than
+    /// a pixel of these is narrowed. Where partners cut, it is narrowed alone.
     #[default]
     Close,
     /// The bound alone rules.

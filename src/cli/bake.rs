@@ -145,8 +145,8 @@ enum ClipsArgument {
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 enum HolesArgument {
-    /// Pictures 512 pixels wide from 26 directions show neither; a bound wider than a pixel of theirs,
-    /// 0.125% of the diagonal, is narrowed to that
+    /// What pictures 512 pixels wide from 26 directions show is mended as far as splats within the bound
+    /// can do without; a bound wider than a pixel of theirs, 0.125% of the diagonal, is narrowed to that
     #[default]
     Close,
     /// They stay: the bound alone rules, and coarse ones make smaller files

@@ -1,6 +1,6 @@
 //! The rays on which an asset shows a hole, or anything beside the outline: what a bake has to mend.
 //!
-//! They are the rays of [`super::holes`], so that none is left where holes are counted.
+//! They are the rays of [`super::holes`], so that what is mended is what is counted.
 
 use rayon::prelude::*;
 
