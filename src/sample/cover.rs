@@ -2,11 +2,13 @@
 //!
 //! Greedy by newly covered area a byte, with lazy updates (Wu and Kobbelt 2004, 4), then
 //! whatever is left is seeded on its own, then redundant splats go, then splats are moved and
-//! merged, and at last the choice is made anew from all the candidates of which these tell.
+//! merged, and at last the choice is made anew from all the candidates of which these tell, and from
+//! others that take from their neighbours what these cover.
 
 use std::collections::BinaryHeap;
 
 use super::candidates::Regions;
+use super::exchange::exchange;
 use super::gain::Gain;
 use super::grow::Grower;
 use super::moves::improve;
@@ -81,6 +83,7 @@ pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, eff
     choice.redundant = cover.drop_redundant();
     choice.merged = improve(grower, regions, &mut cover, effort);
     cover.rechoose();
+    exchange(grower, regions, &mut cover, effort);
     choice.low_rank = cover.chosen.iter().filter(|&&index| cover.candidates[index].rank < 6).count();
     (cover, choice)
 }
@@ -96,6 +99,11 @@ impl Cover {
     #[must_use]
     pub fn splats(&self) -> Vec<Splat> {
         self.chosen.iter().map(|&index| self.candidates[index].splat.clone()).collect()
+    }
+
+    /// What the chosen cost.
+    pub(super) fn cost(&self) -> f64 {
+        self.chosen.iter().map(|&index| cost(&self.candidates[index].splat)).sum()
     }
 
     /// The pieces that no other splat covers than these, ascending.

@@ -6,8 +6,8 @@
 //! the prices of all pieces.
 //!
 //! What is bounded is [`cost`], the file's size as the choice weighs it, over the candidates at hand:
-//! those grown from seeds, last resorts, and those that moves took. Splats that nothing grew may
-//! make a cheaper cover.
+//! those grown from seeds, last resorts, and those that moves and exchanges laid out. Splats that
+//! nothing grew may make a cheaper cover.
 
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,13 @@
 //! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
-//! became redundant, move and merge what is left, choose anew from all that were grown, mend what shows
-//! from the side.
+//! became redundant, move and merge what is left, choose anew from all that were grown, lay out others
+//! for shares that neighbours exchange, mend what shows from the side.
 
 pub mod backing;
 pub mod budget;
 pub mod candidates;
 pub mod cover;
 pub mod enclose;
+mod exchange;
 pub mod facet;
 mod gain;
 pub mod grow;
@@ -14,6 +15,7 @@ pub mod lower_bound;
 pub mod margin;
 pub mod moves;
 pub mod outline;
+mod owners;
 pub mod polygon;
 mod rechoose;
 pub mod region;

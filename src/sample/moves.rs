@@ -11,9 +11,9 @@ use super::candidates::Regions;
 use super::cover::{Cover, cost};
 use super::enclose::Need;
 use super::grow::Grower;
+use super::owners::Owners;
 use super::region::Region;
 use super::settle::Candidate;
-use crate::analyse::surface::Rows;
 
 /// Splats looked at side by side before their moves are made. Batches are of the same size
 /// whatever the threads, so that the result is the same too.
@@ -65,7 +65,7 @@ struct Move {
 }
 
 fn pass(grower: &Grower, regions: &Regions, cover: &mut Cover, partners: usize) {
-    let owners = owners(cover);
+    let owners = Owners::of(cover);
     let mut alive = vec![false; cover.candidates.len()];
     cover.chosen.iter().for_each(|&index| alive[index] = true);
     // Those with the least of their own first: they are the easiest to do without.
@@ -94,19 +94,13 @@ fn pass(grower: &Grower, regions: &Regions, cover: &mut Cover, partners: usize) 
     cover.drop_redundant();
 }
 
-/// For each piece, the chosen splats that cover it, in the order in which they were.
-fn owners(cover: &Cover) -> Rows {
-    let of = |&index: &usize| cover.candidates[index].pieces.iter().map(move |&piece| (piece, index as u32));
-    Rows::placed(cover.times.len(), || cover.chosen.iter().flat_map(of))
-}
-
 /// What a search for a move looks at.
 struct Search<'a> {
     grower: &'a Grower<'a>,
     cover: &'a Cover,
     /// For each candidate, whether it is chosen still.
     alive: &'a [bool],
-    owners: &'a Rows,
+    owners: &'a Owners,
 }
 
 impl Search<'_> {
@@ -116,7 +110,8 @@ impl Search<'_> {
         if !self.alive[index] {
             return None;
         }
-        let nearest = self.neighbours(index).into_iter().take(partners);
+        let near = self.owners.neighbours(self.cover, index).into_iter();
+        let nearest = near.filter(|&other| self.alive[other]).take(partners);
         let mut mergers = nearest.filter_map(|other| Some((other, self.pair(index, other)?)));
         let merger = mergers.find_map(|(other, need)| {
             let found = self.move_to(&need, vec![index, other], region)?;
@@ -127,20 +122,6 @@ impl Search<'_> {
             let need = Need::new(self.grower.surface, self.cover.own(&[index]), axes)?;
             self.move_to(&need, vec![index], region)
         })
-    }
-
-    /// Those chosen that cover some of what a splat covers, the nearest centre first.
-    fn neighbours(&self, index: usize) -> Vec<usize> {
-        let pieces = self.cover.candidates[index].pieces.iter();
-        let mut near: Vec<u32> = pieces.flat_map(|&piece| self.owners.row(piece)).copied().collect();
-        near.sort_unstable();
-        near.dedup();
-        let center = |of: usize| self.cover.candidates[of].splat.center;
-        let away = |other: usize| center(other).distance_squared(center(index));
-        let mut near: Vec<usize> = near.into_iter().map(|other| other as usize).collect();
-        near.retain(|&other| other != index && self.alive[other]);
-        near.sort_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
-        near
     }
 
     /// What only two splats cover; `None` if it reaches too far for one.
