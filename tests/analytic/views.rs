@@ -9,8 +9,9 @@ use qsplat::model::mesh::Mesh;
 use qsplat::render::cpu;
 use qsplat::render::input::{Model, Prepared, Style};
 
-/// Pixels a side: rays that no bake looks along, which are those of [`views::SIDE`].
-pub const COARSER: u32 = views::SIDE / 2;
+/// Pixels a side: of these rays, but for 16 of a view, no bake looks along any, since it does along those of
+/// [`views::SIDE`] and midway between them.
+pub const COARSER: u32 = 300;
 
 /// What 26 views showed, in pixels.
 #[derive(Default)]
