@@ -143,7 +143,49 @@ impl Conic {
             }
         })
     }
+
+    /// Points from `P1` to `P3`, none farther than `step` from the one before: equal steps of the
+    /// parameter leave out most of the arms of a shape next to 1.
+    #[must_use]
+    pub fn walk(&self, step: f64) -> Vec<DVec2> {
+        let mut points = vec![self.p1];
+        if self.rho > 0.0 && self.rho < 1.0 {
+            for n in 0..WALK_PARTS {
+                let at = |n: u32| f64::from(n) / f64::from(WALK_PARTS);
+                self.walk_part([at(n), at(n + 1)], step, WALK_DEPTH, &mut points);
+            }
+        } else {
+            let corner = (self.rho > 0.0).then_some(self.p2);
+            for end in corner.into_iter().chain([self.p3]) {
+                let start = points[points.len() - 1];
+                let count = (start.distance(end) / step).ceil().clamp(1.0, WALK_MOST);
+                points.extend((1..=count as usize).map(|n| start.lerp(end, n as f64 / count)));
+            }
+        }
+        points
+    }
+
+    /// The points of a part of the curve but the first, halved by its parameter until near enough.
+    fn walk_part(&self, [from, to]: [f64; 2], step: f64, depth: u32, points: &mut Vec<DVec2>) {
+        let end = self.point(to);
+        if depth == 0 || points[points.len() - 1].distance(end) <= step {
+            points.push(end);
+            return;
+        }
+        let middle = 0.5 * (from + to);
+        self.walk_part([from, middle], step, depth - 1, points);
+        self.walk_part([middle, to], step, depth - 1, points);
+    }
 }
+
+/// Parts that a curve is walked in: each turns little enough for its chord to tell its length.
+const WALK_PARTS: u32 = 16;
+
+/// Halvings of each part at most: they reach all along the arms of shapes up to 0.99999.
+const WALK_DEPTH: u32 = 24;
+
+/// Points along a straight leg at most.
+const WALK_MOST: f64 = 65_536.0;
 
 #[cfg(test)]
 mod tests {
@@ -162,6 +204,20 @@ mod tests {
                 assert!(conic.cuts(middle - step), "right of the curve, rho {rho} side {side}");
                 assert!(!conic.cuts(middle + step), "left of the curve, rho {rho} side {side}");
             }
+        }
+    }
+
+    #[test]
+    fn a_walk_takes_no_long_step_whatever_the_shape() {
+        for rho in [0.0, 0.1, 0.5, 0.99, 0.9999, 1.0] {
+            let conic = Conic { p1: P1, p2: DVec2::new(0.2, 0.8), p3: P3, rho };
+            let walk = conic.walk(0.01);
+            assert_eq!((walk[0], walk[walk.len() - 1]), (P1, P3));
+            let longest = walk.windows(2).map(|pair| pair[0].distance(pair[1])).fold(0.0, f64::max);
+            assert!(longest <= 0.01 + 1e-12, "rho {rho}: {longest}");
+            assert!(walk.len() < 1000, "rho {rho}: {} points", walk.len());
+            let strays = conic.points(7).any(|p| !walk.iter().any(|q| q.distance(p) <= 0.01));
+            assert!(!strays, "rho {rho}");
         }
     }
 
