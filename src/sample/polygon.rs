@@ -7,6 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use super::backing::{Below, between_cuts, place_count, rim_places};
+use super::budget::Budget;
 use super::grow::Grower;
 use super::outline::border_sides;
 use super::region::{Member, Region};
@@ -44,7 +45,8 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
             let cut = |splat: Splat| Some(Splat { clips: triangle(&splat).all()?, ..splat });
             let mut less = PADS.into_iter().filter_map(padded).filter_map(cut);
             let holds = |less: &Splat| triangle(less).is_inside() && !triangle(less).strays(&less.clips);
-            splat = less.find(holds).unwrap_or(splat);
+            let blunted = || Some(Splat { clips: triangle(&splat).blunted(&splat.clips)?, ..splat.clone() });
+            splat = less.find(holds).or_else(blunted).unwrap_or(splat);
         }
     }
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
@@ -60,8 +62,8 @@ const PADS: [f64; 3] = [0.5, 0.2, 0.05];
 /// Which sides of a triangle to cut along, bit by bit; those with fewer cuts come first.
 const CUT_ALONG: [u32; 8] = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111];
 
-/// Steps along a chord between places that are looked at.
-const PLACES_ALONG: usize = 16;
+/// Steps along a radius, at most, between places that are looked at.
+const PLACES_ALONG: f64 = 512.0;
 
 /// The ends of a chord are on the rim, but for rounding.
 const ON_RIM: f64 = 1e-9;
@@ -108,19 +110,50 @@ impl<'a> Triangle<'a> {
         self.outline().iter().all(|&corner| (corner / self.radii).length_squared() <= 1.0)
     }
 
-    /// Whether it is cut along all its sides, and what is left goes on beyond it by more than a rim may.
+    /// Whether it is cut along all its sides, and what is left goes on beyond it too far.
     fn strays(&self, clips: &[ClipCurve]) -> bool {
+        self.all().is_some_and(|all| all == clips) && !self.far(clips).is_empty()
+    }
+
+    /// Places on the border of what clip curves leave that lie farther beyond it than a rim may, or where
+    /// it touches a line farther than a cut may.
+    fn far(&self, clips: &[ClipCurve]) -> Vec<DVec2> {
         let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
         let corners = self.outline().map(|corner| corner.extend(0.0));
         let kept = |own: usize, uv: &DVec2| {
             let within = (*uv / self.radii).length_squared() <= 1.0 + ON_RIM;
             within && !conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(*uv))
         };
-        let along = |n: usize| conics[n].points(PLACES_ALONG).filter(move |uv| kept(n, uv));
+        // Short beside any corner that is cut: what lies farthest off may be no longer than a bound.
+        let step = 0.25 * self.grower.budget.clip.miss;
+        let step = step.max(self.radii.max_element() / PLACES_ALONG);
+        let along = |n: usize| conics[n].walk(step).into_iter().filter(move |uv| kept(n, uv));
         let places = (0..conics.len()).flat_map(along);
-        let rim = between_cuts(clips, self.radii).filter(|uv| kept(conics.len(), uv));
-        let far = |uv: DVec2| to_triangle(corners, uv.extend(0.0)).length() > self.grower.budget.rim;
-        self.all().is_some_and(|all| all == clips) && places.chain(rim).any(far)
+        let tips = between_cuts(clips, self.radii).filter(|uv| kept(conics.len(), uv));
+        let Budget { rim, clip, .. } = self.grower.budget;
+        let lined = self.corners.iter().any(|&corner| self.grower.surface.on_border(corner));
+        let most = if lined { clip.edge } else { rim };
+        let far = |uv: &DVec2| to_triangle(corners, uv.extend(0.0)).length() > most;
+        places.chain(tips).filter(far).collect()
+    }
+
+    /// The same clip curves, and a chord across each corner beyond which what they leave lies too far;
+    /// `None` if that does not help.
+    fn blunted(&self, clips: &[ClipCurve]) -> Option<Vec<ClipCurve>> {
+        let (outline, far) = (self.outline(), self.far(clips));
+        let nearest = |uv: &DVec2| {
+            let distance = |n: &usize| outline[*n].distance_squared(*uv);
+            (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        };
+        let mut blunted = clips.to_vec();
+        for corner in (0..3).filter(|&corner| far.iter().any(|uv| nearest(uv) == Some(corner))) {
+            let [from, to] =
+                [1, 2].map(|n| (outline[corner] - outline[(corner + n) % 3]).normalize_or_zero());
+            // Across the way out, the triangle on its left.
+            let across = 2.0 * self.radii.max_element() * (from + to).normalize_or_zero().perp();
+            blunted.extend(self.fitted(&[outline[corner] - across, outline[corner] + across], false)?);
+        }
+        self.far(&blunted).is_empty().then_some(blunted)
     }
 
     fn outline(&self) -> [DVec2; 3] {
@@ -238,8 +271,8 @@ mod tests {
     }
 
     #[test]
-    fn beyond_acute_corners_no_more_stands_out_than_at_rims() {
-        let mut less_padded = 0;
+    fn beyond_acute_corners_no_more_stands_out_than_at_cuts() {
+        let (mut less_padded, mut blunted) = (0, 0);
         // As far as the file's grids may move a splat.
         let moved = |splat: &Splat| splat.center + QUANTIZE_SHARE * BOUND * splat.axes.x_axis;
         let round = |splat: &Splat| Some(Splat { center: moved(splat), ..splat.clone() });
@@ -255,16 +288,18 @@ mod tests {
             let (_, least) = circumellipse(corners.map(|corner| corner.truncate()));
             less_padded +=
                 u32::from(splat.radii.max_element() < least.max_element() + 0.9 * grower.budget.pad);
+            let all = Triangle::below(&splat, &grower, surface.pieces[0]).all().unwrap();
+            blunted += u32::from(splat.clips.len() > all.len());
             let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
             let grid =
                 (-50..=50).flat_map(|i| (-50..=50).map(move |j| DVec2::new(i.into(), j.into()) / 50.0));
             let uvs = grid.filter(|unit| unit.length_squared() <= 1.0).map(|unit| unit * splat.radii);
             for uv in uvs.filter(|&uv| !conics.iter().any(|conic| conic.cuts(uv))) {
                 let out = to_triangle(corners, uv.extend(0.0)).length();
-                assert!(out <= 2.0 * BOUND, "{n}: {out}");
+                assert!(out <= BOUND, "{n}: {out}");
             }
         }
-        assert!(less_padded > 0, "no corner was acute enough to tell");
+        assert!(less_padded > 0 && blunted > 0, "no corner was acute enough: {less_padded}, {blunted}");
     }
 
     /// How many chords the splat over a triangle in the middle of a grid of unit cells has: the grid
