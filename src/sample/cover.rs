@@ -5,7 +5,7 @@
 //! merged, and at last the choice is made anew from all the candidates of which these tell, and from
 //! others that take from their neighbours what these cover.
 
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use super::candidates::Regions;
 use super::exchange::exchange;
@@ -68,6 +68,8 @@ pub struct Cover {
     pub(super) areas: Vec<f64>,
     /// Rays that no splat may stop.
     pub(super) beside: Vec<Sight>,
+    /// Chosen ones that stop such rays, and that no others could take the place of.
+    pub(super) lasting: BTreeSet<usize>,
 }
 
 /// Chooses from the candidates, adding to them what no candidate covers.
@@ -77,7 +79,7 @@ pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, eff
     let mut choice = Choice::default();
     let mut times = vec![0_u32; areas.len()];
     let chosen = greedy(&candidates, &areas, &mut times);
-    let mut cover = Cover { candidates, chosen, times, areas, beside: Vec::new() };
+    let mut cover = Cover { candidates, chosen, times, areas, ..Cover::default() };
     cover_rest(grower, regions, &mut cover, &mut choice);
     choice.candidates = cover.candidates.len();
     choice.redundant = cover.drop_redundant();

@@ -31,10 +31,13 @@ const MOST_LEFT: usize = 16;
 impl Cover {
     /// Takes out the chosen splats that stop rays which pass beside the surface, and adds the cheapest
     /// known or grown that cover their pieces and stop no such ray, now or before; how many are out. Those
-    /// over pieces that no other covers stay.
+    /// over pieces that no other covers stay for good.
     pub fn withdraw(&mut self, grower: &Grower, regions: &Regions, beside: &[Sight]) -> usize {
         self.beside.extend_from_slice(beside);
-        let shows = |index: &usize| beside.iter().any(|ray| ray.is_stopped(&self.candidates[*index].splat));
+        let shows = |index: &usize| {
+            !self.lasting.contains(index)
+                && beside.iter().any(|ray| ray.is_stopped(&self.candidates[*index].splat))
+        };
         let (shown, kept): (Vec<usize>, Vec<usize>) = self.chosen.par_iter().partition(|index| shows(index));
         if shown.is_empty() {
             return 0;
@@ -55,6 +58,7 @@ impl Cover {
         for index in shown {
             if self.is_needed(index) {
                 self.add(index);
+                self.lasting.insert(index);
                 withdrawn -= 1;
             }
         }
