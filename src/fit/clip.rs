@@ -296,6 +296,16 @@ mod tests {
         follows(line, closed, radii, cuts, tolerance).then_some(clips.len())
     }
 
+    #[test]
+    fn a_curve_that_strays_along_its_arm_or_at_its_end_does_not_follow() {
+        let (radii, rho) = (DVec2::ONE, 0.995);
+        let conic = Conic { p1: DVec2::NEG_X, p2: DVec2::new(0.0, 0.3), p3: DVec2::X, rho };
+        let follows = |along: &dyn Fn(DVec2) -> bool| bounds_only(along, &[conic], radii, &TOLERANCE);
+        assert!(follows(&|_| true));
+        assert!(!follows(&|p| !(-0.7..-0.69).contains(&p.x)), "in the middle of an arm");
+        assert!(!follows(&|p| p.distance(DVec2::NEG_X) > 1e-6), "where it meets the rim");
+    }
+
     fn arc(radius: f64, center: DVec2, from: f64, to: f64) -> Vec<DVec2> {
         (0..=200)
             .map(|n| {
