@@ -9,7 +9,7 @@
 use glam::DVec2;
 
 use super::conic;
-use super::ellipse::{Run, angle, exit, runs};
+use super::ellipse::{Run, angle, exit, holds, runs};
 use super::offset::outward;
 use crate::model::clip_curve::{ClipCurve, Conic, turn};
 
@@ -249,9 +249,6 @@ pub fn follows(
 /// Fewest and most places looked at along a curve.
 const PLACES: (f64, f64) = (16.0, 256.0);
 
-/// A curve begins and ends on the rim, but for rounding.
-const ON_RIM: f64 = 1e-9;
-
 /// Whether clip curves bound nothing but outlines: the other side of [`follows`].
 ///
 /// A place on a curve that no other curve cuts away is a border of what is kept. It must lie
@@ -266,9 +263,8 @@ pub fn bounds_only(
     conics.iter().enumerate().all(|(index, conic)| {
         let length = conic.p1.distance(conic.p2) + conic.p2.distance(conic.p3);
         let length = if conic.rho == 0.0 { conic.p1.distance(conic.p3) } else { length };
-        let step = apart.clamp(length / PLACES.1, length / PLACES.0);
-        let within = |p: &DVec2| (*p / radii).length_squared() <= 1.0 + ON_RIM;
-        conic.walk(step).into_iter().filter(within).all(|p| {
+        let step = apart.min(length / PLACES.0).max(length / PLACES.1);
+        conic.walk(step).into_iter().filter(|&p| holds(p, radii)).all(|p| {
             let cut = conics.iter().enumerate().any(|(other, conic)| other != index && conic.cuts(p));
             cut || along(p)
         })

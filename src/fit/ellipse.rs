@@ -11,6 +11,15 @@ pub struct Run {
     pub closed: bool,
 }
 
+/// What ends on the border lies this share beyond it at most, squared: the rounding of sines.
+const ON_BORDER: f64 = 1e-9;
+
+/// Whether a point lies inside an ellipse or on its border.
+#[must_use]
+pub fn holds(point: DVec2, radii: DVec2) -> bool {
+    (point / radii).length_squared() <= 1.0 + ON_BORDER
+}
+
 /// The parameters, ascending, at which the line through `a` and `b` meets the border.
 #[must_use]
 pub fn crossings(a: DVec2, b: DVec2, radii: DVec2) -> Option<(f64, f64)> {

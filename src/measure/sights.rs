@@ -28,7 +28,7 @@ const WIDEST: f64 = 4.0;
 pub struct Sights {
     /// The views that holes are counted in.
     own: Vec<(View, Depths)>,
-    /// Those [between](between) them that still showed a hole when they were last looked along.
+    /// Those [`between`] them that still showed a hole when they were last looked along.
     moved: Vec<(View, Depths)>,
 }
 

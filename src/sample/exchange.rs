@@ -32,8 +32,8 @@ const WORTH: f64 = 0.002;
 /// How much is tried.
 struct Thoroughness {
     /// Times that splats are laid out, at most. At a tenth of a percent, with six neighbours, three of them
-    /// made the cover of stanford-bunny 9, 4 and 3 % cheaper; one with three neighbours makes files 5 %
-    /// smaller in the median, and the bake up to half as long again.
+    /// made the cover of stanford-bunny 9, 4 and 3 % cheaper; one with three neighbours makes files 4 %
+    /// smaller in the median, and the bake a third to two thirds longer.
     rounds: usize,
     /// Neighbours that a splat exchanges with, the nearest first.
     neighbours: usize,

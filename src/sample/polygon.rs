@@ -13,7 +13,7 @@ use super::outline::border_sides;
 use super::region::{Member, Region};
 use super::settle::{Candidate, rounded};
 use crate::fit::clip::{self, Care};
-use crate::fit::ellipse::circumellipse;
+use crate::fit::ellipse::{circumellipse, holds};
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::polyline::nearest_on;
@@ -44,9 +44,9 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
         if triangle(&splat).strays(&splat.clips) {
             let cut = |splat: Splat| Some(Splat { clips: triangle(&splat).all()?, ..splat });
             let mut less = PADS.into_iter().filter_map(padded).filter_map(cut);
-            let holds = |less: &Splat| triangle(less).is_inside() && !triangle(less).strays(&less.clips);
+            let does = |less: &Splat| triangle(less).is_inside() && !triangle(less).strays(&less.clips);
             let blunted = || Some(Splat { clips: triangle(&splat).blunted(&splat.clips)?, ..splat.clone() });
-            splat = less.find(holds).or_else(blunted).unwrap_or(splat);
+            splat = less.find(does).or_else(blunted).unwrap_or(splat);
         }
     }
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
@@ -62,11 +62,12 @@ const PADS: [f64; 3] = [0.5, 0.2, 0.05];
 /// Which sides of a triangle to cut along, bit by bit; those with fewer cuts come first.
 const CUT_ALONG: [u32; 8] = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111];
 
-/// Steps along a radius, at most, between places that are looked at.
-const PLACES_ALONG: f64 = 512.0;
+/// Misses between places that are looked at along a chord: what lies too far beyond a corner may be as
+/// short as one.
+const STEP: f64 = 0.25;
 
-/// The ends of a chord are on the rim, but for rounding.
-const ON_RIM: f64 = 1e-9;
+/// Steps along a radius at most.
+const MOST_STEPS: f64 = 512.0;
 
 /// A triangle in the plane of a splat.
 struct Triangle<'a> {
@@ -121,12 +122,9 @@ impl<'a> Triangle<'a> {
         let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
         let corners = self.outline().map(|corner| corner.extend(0.0));
         let kept = |own: usize, uv: &DVec2| {
-            let within = (*uv / self.radii).length_squared() <= 1.0 + ON_RIM;
-            within && !conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(*uv))
+            holds(*uv, self.radii) && !conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(*uv))
         };
-        // Short beside any corner that is cut: what lies farthest off may be no longer than a bound.
-        let step = 0.25 * self.grower.budget.clip.miss;
-        let step = step.max(self.radii.max_element() / PLACES_ALONG);
+        let step = (STEP * self.grower.budget.clip.miss).max(self.radii.max_element() / MOST_STEPS);
         let along = |n: usize| conics[n].walk(step).into_iter().filter(move |uv| kept(n, uv));
         let places = (0..conics.len()).flat_map(along);
         let tips = between_cuts(clips, self.radii).filter(|uv| kept(conics.len(), uv));

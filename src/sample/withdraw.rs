@@ -231,5 +231,7 @@ mod tests {
         let mut cover = cover(&discs, 2, 3);
         assert_eq!(withdraw(&mut cover, &[1.5]), 1, "one of the two stays");
         assert_eq!((cover.chosen.as_slice(), cover.times.as_slice()), (&[2, 1][..], &[1; 3][..]));
+        cover.candidates.push(Candidate { pieces: vec![1, 2], ..cover.candidates[2].clone() });
+        assert_eq!(withdraw(&mut cover, &[1.5]), 0, "and for good, whatever is laid out since");
     }
 }
