@@ -107,6 +107,11 @@ impl From<&Visibility> for Depths {
 }
 
 impl Depths {
+    /// From depths of all pixels, rows from the top, infinite where nothing is hit.
+    pub(super) fn new(size: [u32; 2], depths: Vec<f64>) -> Self {
+        Self { size, depths }
+    }
+
     /// What a pixel shows.
     pub(super) fn at(&self, x: u32, y: u32) -> Option<f64> {
         self.depths.get(y as usize * self.size[0] as usize + x as usize).copied().filter(|d| d.is_finite())
@@ -121,9 +126,8 @@ pub fn compare(input: &Depths, splats: &Visibility, rules: &Rules) -> HoleMap {
     let marks = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
     let marks = marks.map(|(x, y)| {
         let inside = input.at(x, y);
-        let width = if inside.is_some() { rules.inner } else { BAND };
         match (inside, splats.at(x, y)) {
-            _ if !hits.uniform(x, y, width, inside.is_some()) => Mark::Silhouette,
+            _ if !hits.are_compared(x, y, inside.is_some(), rules) => Mark::Silhouette,
             (Some(_), None) => Mark::Missing,
             (None, Some(_)) => Mark::Extra,
             // The first is the quick answer to most, the second the rule.
@@ -136,6 +140,25 @@ pub fn compare(input: &Depths, splats: &Visibility, rules: &Rules) -> HoleMap {
         }
     });
     HoleMap { size, marks: marks.collect() }
+}
+
+/// How deep the ray through each pixel that is asked about may go before it has to be stopped, lest it
+/// count as a fault: infinitely beside the input, where nothing may stop it. Minus infinity for pixels that
+/// are not asked about or not compared.
+///
+/// Behind the input the limit is that of the pixel itself; where it is not kept, [`farthest`] decides.
+pub(super) fn limits(input: &Depths, asked: &[bool], rules: &Rules) -> Vec<f64> {
+    let hits = Counts::of(input);
+    let limit = |(place, &asked): (usize, &bool)| {
+        let (x, y) = (place as u32 % input.size[0], place as u32 / input.size[0]);
+        let inside = input.at(x, y);
+        if asked && hits.are_compared(x, y, inside.is_some(), rules) {
+            inside.map_or(f64::INFINITY, |own| own + rules.behind)
+        } else {
+            f64::NEG_INFINITY
+        }
+    };
+    asked.iter().enumerate().map(limit).collect()
 }
 
 /// The greatest depth that the nine pixels around one show.
@@ -200,6 +223,11 @@ impl Counts {
             }
         }
         Self { size: seen.size, sums }
+    }
+
+    /// Whether a pixel that is hit or not lies off the silhouette's band.
+    fn are_compared(&self, x: u32, y: u32, hit: bool, rules: &Rules) -> bool {
+        self.uniform(x, y, if hit { rules.inner } else { BAND }, hit)
     }
 
     /// Whether all pixels within `width` of one are as it is; beyond the picture nothing is hit.

@@ -165,4 +165,4 @@ fn decibels(mean_square: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -7,15 +7,16 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::holes::{self, Depths, Mark, Rules};
+use super::holes::{self, Depths, Rules};
 use super::views::{SIDE, View, views};
 use crate::error::Result;
 use crate::model::asset::Asset;
 use crate::model::mesh::Mesh;
 use crate::model::sight::{Faults, Sight};
-use crate::render::cpu;
+use crate::model::splat::Splat;
 use crate::render::eye::Eye;
 use crate::render::input::{Model, Prepared, Style};
+use crate::render::stops::Stops;
 
 /// A mesh is not drawn as discs.
 const NO_DISC: f64 = 0.0;
@@ -24,12 +25,23 @@ const NO_DISC: f64 = 0.0;
 /// it, and the bound with it: what stands out there is what the bound allows.
 const WIDEST: f64 = 4.0;
 
-/// How far away a mesh lies in the views of [`views`] and in those between. Eight bytes a pixel.
+/// What is known of a mesh in the views of [`views`] and in those between. Eight bytes a pixel.
 pub struct Sights {
-    /// The views that holes are counted in.
-    own: Vec<(View, Depths)>,
-    /// Those [`between`] them that still showed a hole when they were last looked along.
-    moved: Vec<(View, Depths)>,
+    looks: Vec<Look>,
+    /// The splats that were last looked at.
+    last: Option<Vec<Splat>>,
+}
+
+/// One view of a mesh, and the faults that splats last showed in it.
+struct Look {
+    view: View,
+    /// How far away the mesh lies.
+    depths: Depths,
+    /// Whether what stands out beside the outline counts.
+    outlined: bool,
+    /// Faults by their pixels, ascending.
+    open: Vec<(usize, Sight)>,
+    beside: Vec<(usize, Sight)>,
 }
 
 impl Sights {
@@ -40,41 +52,86 @@ impl Sights {
     pub fn of(mesh: &Mesh) -> Result<Self> {
         let model = Model::Mesh(mesh);
         let input = Prepared::new(model, &Style::default());
-        let drawn = |view: View| {
-            let depths = Depths::from(&input.visibility(&view.camera, [SIDE; 2])?);
-            Ok((view, depths))
+        let look = |(view, outlined): (View, bool)| {
+            let depths = Depths::new([SIDE; 2], input.depths(&view.camera, [SIDE; 2])?);
+            Ok(Look { view, depths, outlined, open: Vec::new(), beside: Vec::new() })
         };
-        let all = |views: Vec<View>| views.into_par_iter().map(drawn).collect::<Result<_>>();
         let own = views(model);
         let scale = model.cloud().frame.scale();
-        let moved = own.iter().map(|view| between(view, scale)).collect();
-        Ok(Self { own: all(own)?, moved: all(moved)? })
+        let moved: Vec<View> = own.iter().map(|view| between(view, scale)).collect();
+        let all = own.into_par_iter().map(|view| (view, true));
+        let all = all.chain(moved.into_par_iter().map(|view| (view, false)));
+        Ok(Self { looks: all.map(look).collect::<Result<_>>()?, last: None })
     }
 
     /// The rays of pixels that are missing or seen through, and of those that are extra, in the order of
     /// the views; extra ones of views that show the bound four pixels wide at most.
     ///
     /// Only holes are looked for along the views between: what stands out beside the outline is wider than
-    /// a pixel where it counts. Each of them is looked along until it shows none: most show none from the
-    /// first, and what mends one ray seldom opens another.
+    /// a pixel where it counts. Pixels that show none of the splats that have come or gone since the last
+    /// call show what they did.
     ///
     /// # Errors
     /// As [`Self::of`].
     pub fn faults(&mut self, asset: &Asset) -> Result<Faults> {
-        let along = |views: &[(View, Depths)]| {
-            let each = views.par_iter().map(|(view, depths)| faults(asset, view, depths));
-            each.collect::<Result<Vec<Faults>>>()
+        let changed = self.last.replace(asset.splats.clone()).map(|last| Asset {
+            splats: [others(&asset.splats, &last), others(&last, &asset.splats)].concat(),
+            ..asset.clone()
+        });
+        self.looks.par_iter_mut().try_for_each(|look| look.again(asset, changed.as_ref()))?;
+        let sights = |of: fn(&Look) -> &[(usize, Sight)]| {
+            self.looks.iter().flat_map(of).map(|&(_, sight)| sight).collect()
         };
-        let (own, moved) = (along(&self.own)?, along(&self.moved)?);
-        let mut shown = moved.iter().map(|one| !one.open.is_empty());
-        self.moved.retain(|_| shown.next().unwrap_or_default());
-        let mut all = Faults::default();
-        for Faults { open, beside } in own {
-            all.open.extend(open);
-            all.beside.extend(beside);
+        Ok(Faults { open: sights(|look| &look.open), beside: sights(|look| &look.beside) })
+    }
+}
+
+impl Look {
+    /// Looks again where splats have come or gone, or everywhere.
+    fn again(&mut self, asset: &Asset, changed: Option<&Asset>) -> Result<()> {
+        let eye = Eye::new(&self.view.camera, &asset.frame, [SIDE; 2])?;
+        let all = || vec![true; SIDE as usize * SIDE as usize];
+        let asked = changed.map_or_else(all, |changed| Stops::new(changed, &eye).touched());
+        let rules = Rules::new(asset, NO_DISC, &self.view, SIDE);
+        let limits = holes::limits(&self.depths, &asked, &rules);
+        let stops = Stops::new(asset, &eye);
+        let stopped = stops.within(&limits);
+        let open = self.holes(&limits, &stopped, &stops, rules.behind, &eye);
+        renew(&mut self.open, open, &asked);
+        if self.outlined && asset.max_error / self.view.height * f64::from(SIDE) <= WIDEST {
+            renew(&mut self.beside, beside(&limits, &stopped, &eye), &asked);
         }
-        all.open.extend(moved.into_iter().flat_map(|one| one.open));
-        Ok(all)
+        Ok(())
+    }
+
+    /// The rays that meet the mesh and that no splat stops soon enough.
+    fn holes(
+        &self,
+        limits: &[f64],
+        stopped: &[Option<f64>],
+        stops: &Stops<'_>,
+        behind: f64,
+        eye: &Eye,
+    ) -> Vec<(usize, Sight)> {
+        // Most rays are stopped before what lies behind their own pixel: only for the others it is asked
+        // how deep those around reach.
+        let mut farther = vec![f64::NEG_INFINITY; limits.len()];
+        for (place, limit) in farther.iter_mut().enumerate() {
+            if limits[place].is_finite() && stopped[place].is_none() {
+                let [x, y] = pixel(place);
+                *limit = holes::farthest(&self.depths, x, y) + behind;
+            }
+        }
+        let stopped = stops.within(&farther);
+        let missed =
+            (0..farther.len()).filter(|&place| farther[place].is_finite() && stopped[place].is_none());
+        let sight = |place: usize| {
+            let [x, y] = pixel(place);
+            let own = self.depths.at(x, y)?;
+            let at = eye.place([x, y], own);
+            Some((place, Sight { at, direction: eye.forward, beyond: farther[place] - own }))
+        };
+        missed.filter_map(sight).collect()
     }
 }
 
@@ -91,34 +148,90 @@ fn between(view: &View, scale: f64) -> View {
     moved
 }
 
-/// The same for one view.
-fn faults(asset: &Asset, view: &View, depths: &Depths) -> Result<Faults> {
-    let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
-    let rules = Rules::new(asset, NO_DISC, view, SIDE);
-    let map = holes::compare(depths, &splats, &rules);
-    let eye = Eye::new(&view.camera, &asset.frame, [SIDE; 2])?;
-    let open = |(x, y): (u32, u32)| {
-        let own = depths.at(x, y)?;
-        let beyond = holes::farthest(depths, x, y) + rules.behind - own;
-        Some(Sight { at: eye.place([x, y], own), direction: eye.forward, beyond })
+/// The splats of one list that are not in another.
+fn others(some: &[Splat], than: &[Splat]) -> Vec<Splat> {
+    let mut known: Vec<&Splat> = than.iter().collect();
+    known.sort_by(|a, b| a.center.x.total_cmp(&b.center.x));
+    let is_known = |splat: &Splat| {
+        let from = known.partition_point(|other| other.center.x < splat.center.x);
+        let same = known[from..].iter().take_while(|other| other.center.x <= splat.center.x);
+        same.into_iter().any(|&other| other == splat)
     };
-    let bound = asset.max_error / view.height * f64::from(SIDE);
-    let beside = |(x, y): (u32, u32)| {
-        let at = eye.place([x, y], splats.at(x, y)?.depth);
-        Some(Sight { at, direction: eye.forward, beyond: f64::INFINITY })
+    some.iter().filter(|splat| !is_known(splat)).cloned().collect()
+}
+
+/// The rays that pass beside the mesh and that a splat stops.
+fn beside(limits: &[f64], stopped: &[Option<f64>], eye: &Eye) -> Vec<(usize, Sight)> {
+    let extra = stopped.iter().enumerate().filter(|&(place, _)| limits[place] == f64::INFINITY);
+    let sight = |(place, depth): (usize, &Option<f64>)| {
+        let at = eye.place(pixel(place), (*depth)?);
+        Some((place, Sight { at, direction: eye.forward, beyond: f64::INFINITY }))
     };
-    Ok(Faults {
-        open: map.places(&[Mark::Missing, Mark::Through]).filter_map(open).collect(),
-        beside: map.places(&[Mark::Extra]).filter(|_| bound <= WIDEST).filter_map(beside).collect(),
-    })
+    extra.filter_map(sight).collect()
+}
+
+/// Puts what was found in some pixels in the place of what was known of them.
+fn renew(known: &mut Vec<(usize, Sight)>, found: Vec<(usize, Sight)>, asked: &[bool]) {
+    known.retain(|&(place, _)| !asked[place]);
+    known.extend(found);
+    known.sort_unstable_by_key(|&(place, _)| place);
+}
+
+/// The column and row of a pixel.
+fn pixel(place: usize) -> [u32; 2] {
+    [place as u32 % SIDE, place as u32 / SIDE]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::holes::Mark;
+    use crate::measure::seen::tests::{asset, disc, plane, squares};
     use crate::model::cloud::Cloud;
     use crate::model::frame::Frame;
+    use crate::render::cpu;
     use glam::{DVec2, Vec3};
+
+    /// How many pixels [`holes::compare`] marks as missing or seen through, and as extra.
+    fn counted(asset: &Asset, mesh: &Mesh) -> Result<[usize; 2]> {
+        let model = Model::Mesh(mesh);
+        let input = Prepared::new(model, &Style::default());
+        let mut counts = [0; 2];
+        for view in views(model) {
+            let depths = Depths::from(&input.visibility(&view.camera, [SIDE; 2])?);
+            let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
+            let map = holes::compare(&depths, &splats, &Rules::new(asset, NO_DISC, &view, SIDE));
+            counts[0] += map.places(&[Mark::Missing, Mark::Through]).count();
+            counts[1] += map.places(&[Mark::Extra]).count();
+        }
+        Ok(counts)
+    }
+
+    #[test]
+    fn what_is_looked_for_is_what_is_counted_and_looking_again_tells_the_same() -> Result<()> {
+        let (mut mesh, back) = (plane(0.1), plane(-0.1));
+        mesh.vertices.positions.extend(back.vertices.positions);
+        mesh.triangles.extend([[4, 5, 6], [4, 6, 7]]);
+        let whole = [squares(0.1), squares(-0.1)].concat();
+        let mut holed = whole.clone();
+        holed.remove(5);
+        holed.push(disc(DVec3::new(0.5, 0.1, 0.1), 0.02));
+        let mut known = Sights::of(&mesh)?;
+        let mut any = [0; 2];
+        for splats in [holed.clone(), whole.clone(), holed[1..].to_vec(), holed] {
+            let asset = asset(splats);
+            let again = known.faults(&asset)?;
+            let mut afresh = Sights::of(&mesh)?;
+            assert_eq!(again, afresh.faults(&asset)?);
+            afresh.looks.retain(|look| look.outlined);
+            let own = |part: fn(&Look) -> usize| afresh.looks.iter().map(part).sum::<usize>();
+            let found = [own(|look| look.open.len()), own(|look| look.beside.len())];
+            assert_eq!(found, counted(&asset, &mesh)?);
+            (0..2).for_each(|n| any[n] = any[n].max(found[n]));
+        }
+        assert!(any.iter().all(|&count| count > 100), "{any:?}");
+        Ok(())
+    }
 
     #[test]
     fn moved_rays_pass_midway_between_four() -> Result<()> {

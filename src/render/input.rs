@@ -12,7 +12,7 @@ use super::picture::{Picture, Survey, Visibility};
 use super::project::{self, Bound, Prism};
 use super::settings::Settings;
 use super::shade;
-use super::tiles::{Hit, Look, Mix, Scene};
+use super::tiles::{self, Hit, Look, Mix, Scene};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 use crate::model::intersect::{self, LocalRay};
@@ -151,6 +151,18 @@ impl<'a> Prepared<'a> {
         Ok(match &self.kind {
             Kind::Mesh(mesh, normals) => cpu::nearest(&Facets::new(mesh, &eye, normals), &eye),
             Kind::Cloud(cloud, disc) => cpu::nearest(&Discs { cloud, eye: &eye, radius: *disc }, &eye),
+        })
+    }
+
+    /// How deep what each pixel's ray meets first lies, rows from the top; infinite where it meets nothing.
+    ///
+    /// # Errors
+    /// As [`cpu::render`].
+    pub fn depths(&self, camera: &Camera, size: [u32; 2]) -> Result<Vec<f64>> {
+        let eye = self.eye(camera, &Settings::plain(size))?;
+        Ok(match &self.kind {
+            Kind::Mesh(mesh, normals) => tiles::depths(&Facets::new(mesh, &eye, normals), &eye),
+            Kind::Cloud(cloud, disc) => tiles::depths(&Discs { cloud, eye: &eye, radius: *disc }, &eye),
         })
     }
 

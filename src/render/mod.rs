@@ -25,6 +25,7 @@ pub mod input;
 pub mod mesh_normals;
 pub mod picture;
 pub mod settings;
+pub mod stops;
 
 mod composite;
 mod partner;

@@ -123,11 +123,28 @@ pub fn draw<S: Scene, T: Copy + Send + Sync>(
     picture
 }
 
+/// How deep the nearest hit of each sample lies, rows from the top; infinite where nothing is hit. The
+/// same as [`draw`] tells, for much less work, on this thread alone.
+pub fn depths<S: Scene>(scene: &S, eye: &Eye) -> Vec<f64> {
+    let [width, height] = eye.size;
+    let mut depths = vec![f64::INFINITY; width as usize * height as usize];
+    let all = Tile { area: Rect { x: [0, width], y: [0, height] }, eye, mix: Mix::Nearest };
+    for item in 0..scene.len() {
+        let Some(bound) = scene.bound(item) else { continue };
+        all.samples(&Rect::of(&bound, eye.size), |place, ray| {
+            if let Some(hit) = scene.hit(item, ray) {
+                depths[place] = depths[place].min(hit.depth);
+            }
+        });
+    }
+    depths
+}
+
 /// A half-open rectangle of samples.
 #[derive(Clone, Copy, Debug)]
-struct Rect {
-    x: [u32; 2],
-    y: [u32; 2],
+pub(super) struct Rect {
+    pub(super) x: [u32; 2],
+    pub(super) y: [u32; 2],
 }
 
 impl Rect {
@@ -135,7 +152,7 @@ impl Rect {
     const EMPTY: Self = Self { x: [0; 2], y: [0; 2] };
 
     /// The samples of a picture whose middles lie in a bound.
-    fn of(bound: &Bound, size: [u32; 2]) -> Self {
+    pub(super) fn of(bound: &Bound, size: [u32; 2]) -> Self {
         // Casts saturate, and a NaN becomes 0: the rectangle stays inside the picture.
         let span = |min: f64, max: f64, side: u32| {
             let from = (min - 0.5).ceil().max(0.0) as u32;

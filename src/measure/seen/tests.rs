@@ -24,7 +24,7 @@ const ACROSS: u32 = 4;
 const OVERLAP: f64 = 1e-7;
 
 /// A plane of side 1 at a height, as two triangles.
-fn plane(height: f32) -> Mesh {
+pub(in crate::measure) fn plane(height: f32) -> Mesh {
     let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
     let positions = corners.map(|[x, y]| Vec3::new(x, y, height)).to_vec();
     let vertices = Cloud { frame: Frame::default(), positions, ..Cloud::default() };
@@ -32,7 +32,7 @@ fn plane(height: f32) -> Mesh {
 }
 
 /// Squares that tile that plane: discs cut along the four sides of the square in them.
-fn squares(height: f32) -> Vec<Splat> {
+pub(in crate::measure) fn squares(height: f32) -> Vec<Splat> {
     let side = 1.0 / f64::from(ACROSS);
     let radius = side / SQRT_2 + OVERLAP;
     let clips: Vec<ClipCurve> = (0..4)
@@ -45,7 +45,7 @@ fn squares(height: f32) -> Vec<Splat> {
     centers.map(splat).collect()
 }
 
-fn disc(center: DVec3, radius: f64) -> Splat {
+pub(in crate::measure) fn disc(center: DVec3, radius: f64) -> Splat {
     Splat {
         center,
         axes: DMat3::IDENTITY,
@@ -57,7 +57,7 @@ fn disc(center: DVec3, radius: f64) -> Splat {
     }
 }
 
-fn asset(splats: Vec<Splat>) -> Asset {
+pub(in crate::measure) fn asset(splats: Vec<Splat>) -> Asset {
     let (frame, fit) = (Frame::default(), Accuracy::default());
     Asset { frame, diagonal: SQRT_2, max_error: 1e-3, fit, has_colors: false, splats }
 }
