@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""A second decoder of .qsplat version 1, written from format-spec.md alone.
+"""A second decoder of .qsplat version 2, written from format-spec.md alone.
 
 It is slow and plain on purpose: where it and the Rust decoder disagree, one of them or the
 specification is wrong. Prints all splats as JSON with every digit.
 
     decode_qsplat.py FILE.qsplat > FILE.json
 
-Needs Python 3.8 and, for zstd, the module `compression.zstd` (Python 3.14) or `zstandard`, or
-the command `zstd`.
+Needs Python 3.8 and, for colours and clip partners, the module `compression.zstd` (Python 3.14) or
+`zstandard`, or the command `zstd`.
 """
 
 import json
@@ -17,7 +17,6 @@ import subprocess
 import sys
 import zlib
 
-STREAMS = ["KIND", "CELL", "SIZE", "SHAP", "NORM", "BEND", "SPIN", "MORE", "ENDS", "CTRL", "RHO "]
 BIAS = 1 << 27
 
 
@@ -50,18 +49,19 @@ def unzstd(frame):
 
 
 def read_header(data):
-    require(len(data) >= 108, "shorter than a header")
-    fields = struct.unpack_from("<8sHBB5I7BBi8d", data)
-    magic, version, chunks, common = fields[:4]
+    require(len(data) >= 96, "shorter than a header")
+    fields = struct.unpack_from("<8sHBB5I7BBi5d3f", data)
+    magic, version, chunks, reserved = fields[:4]
     require(magic == b"\x89QSP\r\n\x1a\n", "magic")
-    require(version == 1, "version")
+    require(version == 2, "version")
     names = ["cell", "height", "slide", "tilt", "bend", "spin", "clip"]
     head = dict(zip(["required", "optional", "splats", "straight", "curved"], fields[4:9]))
-    head["common"] = common
+    require(reserved == 0, "the reserved byte")
     head["steps"] = dict(zip(names, fields[9:16]))
     head["guesses"], head["exponent"] = fields[16:18]
     floats = fields[18:]
-    head["origin"], head["diagonal"], head["E"], head["fit"] = floats[:3], floats[3], floats[4], floats[5:]
+    head["origin"], head["diagonal"], head["E"] = floats[:3], floats[3], floats[4]
+    head["fit"] = [share * head["E"] for share in floats[5:]]
     require(all(math.isfinite(x) for x in floats), "a float that is not finite")
     require(head["required"] & ~3 == 0, "an unknown required feature")
     require(2.0**-60 <= head["diagonal"] <= 2.0**60, "diagonal")
@@ -74,18 +74,18 @@ def read_header(data):
 
 
 def read_chunks(data, count):
-    end = 108 + 17 * count
+    end = 96 + 17 * count
     require(len(data) >= end + 4, "shorter than its table")
     require(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "header checksum")
     chunks, at = {}, end + 4
     for n in range(count):
-        name, flags, raw, coded, check = struct.unpack_from("<4sBIII", data, 108 + 17 * n)
+        name, flags, raw, coded, check = struct.unpack_from("<4sBIII", data, 96 + 17 * n)
         body = data[at : at + coded]
         at += coded
         require(len(body) == coded and zlib.crc32(body) == check, "a chunk's checksum or length")
         name = name.decode("latin-1")
         require(name not in chunks and flags & ~3 == 0, "chunk twice, or unknown flags")
-        if name not in STREAMS + ["BITS", "COLR", "PART"]:
+        if name not in ["SPLT", "COLR", "PART"]:
             require(flags & 1 == 0, "an unknown required chunk")
             continue
         if flags & 2:
@@ -100,44 +100,73 @@ def read_chunks(data, count):
 
 
 class Tape:
-    def __init__(self, chunks, common):
-        self.symbols = {name: iter(chunks.get(name, b"")) for name in STREAMS}
-        bits = chunks.get("BITS", b"")
-        self.bits_left = 8 * len(bits)
-        self.bits_value = int.from_bytes(bits, "big")
-        self.common = None if "KIND" in chunks else common
+    def __init__(self, data):
+        self.data, self.at = data, 0
+        self.above, self.range = 0, 2**32 - 1
+        self.odds = {}
+        for _ in range(4):
+            self.shift()
 
-    def symbol(self, stream):
-        value = next(self.symbols[stream], None)
-        require(value is not None, "stream " + stream + " ends too early")
-        return value
+    def shift(self):
+        byte = self.data[self.at] if self.at < len(self.data) else 0
+        self.above = (self.above << 8 | byte) & 0xFFFFFFFF
+        self.at += 1
+
+    def settle(self):
+        while self.range < 1 << 24:
+            self.shift()
+            self.range <<= 8
+
+    def symbol(self, field):
+        node = 1
+        for _ in range(8):
+            zero, seen = self.odds.get((field, node), (1 << 15, 0))
+            bound = (self.range >> 12) * min(max(zero >> 4, 1), 4095)
+            weight = 2 * seen + 3
+            if self.above < bound:
+                bit, self.range = 0, bound
+                zero += 2 * (65535 - zero) // weight
+            else:
+                bit, self.range = 1, self.range - bound
+                self.above -= bound
+                zero -= 2 * zero // weight
+            self.odds[field, node] = zero, min(seen + 1, 62)
+            self.settle()
+            node = 2 * node + bit
+        require(self.at <= len(self.data) + 3, "the splats end too early")
+        return node - 256
 
     def bits(self, count):
-        require(count <= self.bits_left, "extra bits end too early")
-        self.bits_left -= count
-        return self.bits_value >> self.bits_left & ((1 << count) - 1)
+        value = 0
+        for _ in range(count):
+            self.range >>= 1
+            bit = int(self.above >= self.range)
+            self.above -= bit * self.range
+            self.settle()
+            value = 2 * value + bit
+        require(self.at <= len(self.data) + 3, "the splats end too early")
+        return value
 
     def kind(self):
-        return self.symbol("KIND") if self.common is None else self.common
+        return self.symbol("Kind")
 
-    def number(self, stream):
-        symbol = self.symbol(stream)
+    def number(self, field):
+        symbol = self.symbol(field)
         if symbol < 8:
             return symbol
         extra = (symbol - 8) // 2 + 2
         require(extra + 2 <= 100, "a symbol that does not exist")
         return ((2 + symbol % 2) << extra) + self.bits(extra)
 
-    def near(self, stream, guess, most):
-        z = self.number(stream)
+    def near(self, field, guess, most):
+        z = self.number(field)
         require(z < 1 << 60, "a difference out of range")
         value = guess + (z // 2 if z % 2 == 0 else -(z + 1) // 2)
         require(abs(value) <= most, "a value out of range")
         return value
 
     def finish(self):
-        require(all(next(s, None) is None for s in self.symbols.values()), "symbols are left over")
-        require(self.bits_left < 8 and self.bits(self.bits_left) == 0, "extra bits are left over")
+        require(self.at == len(self.data) + 3, "bytes are left over")
 
 
 # Section 5: grids ----------------------------------------------------------------------------
@@ -269,8 +298,8 @@ def spin_guess(near, k, bits):
 
 def read_clip(tape, grids, sizes, radii, curved):
     count = grids.border_steps(sizes[0])
-    start = tape.number("ENDS")
-    sweep = tape.number("ENDS") + 1
+    start = tape.number("Ends")
+    sweep = tape.number("Ends") + 1
     require(start < count and sweep < count, "an end beyond a whole turn")
     ends = []
     for n in [start, (start + sweep) % count]:
@@ -278,9 +307,9 @@ def read_clip(tape, grids, sizes, radii, curved):
         ends.append([radii[0] * c, radii[1] * s])
     clip = {"alpha1": central(ends[0]), "alpha3": central(ends[1]), "p2": [0.0, 0.0], "rho": 0.0}
     if curved:
-        control = [tape.near("CTRL", 0, 1 << 40) for _ in range(2)]
+        control = [tape.near("Ctrl", 0, 1 << 40) for _ in range(2)]
         steps = abs(control[0]) + abs(control[1])
-        rho = tape.number("RHO ") + 1
+        rho = tape.number("Rho") + 1
         require(0 < steps and rho <= steps, "a control point on the chord, or rho above 1")
         clip["p2"] = [0.5 * (a + b) + n * grids.clip for a, b, n in zip(ends[0], ends[1], control)]
         clip["rho"] = rho / steps
@@ -297,19 +326,19 @@ def read_splat(tape, grids, last, done):
     kind = tape.kind()
     fineness, turn = kind >> 4 & 3, kind >> 6
     if fineness == 3:
-        more = tape.number("MORE")
-        require(more <= 9, "fineness")
+        more = tape.number("More")
+        require(more <= 13, "fineness")
         fineness += more
     require(turn < 3, "turn")
-    morton = last + tape.number("CELL")
+    morton = last + tape.number("Cell")
     require(morton < 1 << 84, "Morton code")
     cell = [sum((morton >> (3 * n + axis) & 1) << n for n in range(28)) for axis in range(3)]
     near = nearest(done, [grids.coordinate(c, 0, 0) for c in cell])
-    large = tape.near("SIZE", near["sizes"][0] if near else 0, 1023)
+    large = tape.near("Size", near["sizes"][0] if near else 0, 1023)
     require(large >= 0, "radius code")
     small = large
     if kind & 2:
-        small = large - 1 - tape.number("SHAP")
+        small = large - 1 - tape.number("Shape")
         require(small >= 0, "radius code")
     sizes, radii = [large, small], [radius(large) * grids.E, radius(small) * grids.E]
     slide, height = grids.slide_bits(small, fineness), grids.height_bits(fineness)
@@ -318,20 +347,20 @@ def read_splat(tape, grids, last, done):
     coarse = [grids.coordinate(c, l, slide) for c, l in zip(cell, low)]
     steps = grids.normal_steps(large, fineness)
     guess = normal_guess(near, coarse, steps) if near else [0, 0]
-    k = normal_of([tape.near("NORM", g, steps) for g in guess], steps)
+    k = normal_of([tape.near("Norm", g, steps) for g in guess], steps)
     step = grids.bend(fineness) * grids.E
     bend = [0, 0]
     if kind & 1:
         guess = bend_guess(near, radii, step) if near and grids.guesses & 1 else [0, 0]
-        bend = [tape.near("BEND", g, 1 << 40) for g in guess]
+        bend = [tape.near("Bend", g, 1 << 40) for g in guess]
         require(bend != [0, 0], "a quadric without curvature")
     bits, spin = grids.spin_bits(sizes, bend, fineness), 0
     if bits:
-        off, half = tape.near("SPIN", 0, 1 << (bits - 1)), 1 << (bits - 1)
+        off, half = tape.near("Spin", 0, 1 << (bits - 1)), 1 << (bits - 1)
         require(off < half, "turn")
         spin = ((spin_guess(near, k, bits) if near and grids.guesses & 2 else 0) + off) % (1 << bits)
     sort = kind >> 2 & 3
-    counts = [[0, 0], [1, 0], [0, 1]][sort] if sort < 3 else [tape.number("MORE"), tape.number("MORE")]
+    counts = [[0, 0], [1, 0], [0, 1]][sort] if sort < 3 else [tape.number("More"), tape.number("More")]
     require(max(counts) <= 1 << 16 and (sort < 3 or sum(counts) >= 2), "clip counts")
     clips = [read_clip(tape, grids, sizes, radii, n >= counts[0]) for n in range(sum(counts))]
     axis = (max(range(3), key=lambda n: (abs(k[n]), -n)) + turn) % 3
@@ -412,16 +441,17 @@ def link(splats, data):
 def decode(data):
     head, count = read_header(data)
     chunks = read_chunks(data, count)
-    require(not ("KIND" in chunks and head["common"]), "common kind")
-    require(len(chunks.get("CELL", b"")) == head["splats"], "cells")
-    tape, grids = Tape(chunks, head["common"]), Grids(head)
+    require(head["splats"] <= 128 * len(chunks.get("SPLT", b"")), "too few bytes for the splats")
+    require(head["splats"] > 0 or "SPLT" not in chunks, "a chunk without splats")
+    tape, grids = Tape(chunks.get("SPLT", b"")), Grids(head)
     morton, splats, clips, quadric = 0, [], [0, 0], False
     for _ in range(head["splats"]):
         morton, splat, counts = read_splat(tape, grids, morton, splats)
         clips = [a + b for a, b in zip(clips, counts)]
         quadric |= splat["curvature"] != [0.0, 0.0]
         splats.append(splat)
-    tape.finish()
+    if splats:
+        tape.finish()
     require(clips == [head["straight"], head["curved"]], "clip counts")
     require(head["required"] == quadric * 1 + (sum(clips) > 0) * 2, "required features")
     colors = head["optional"] & 1 != 0
@@ -435,7 +465,7 @@ def decode(data):
     if "PART" in chunks:
         link(splats, chunks["PART"])
     return {
-        "version": 1,
+        "version": 2,
         "frame": {"origin": head["origin"], "exponent": head["exponent"]},
         "diagonal": head["diagonal"],
         "max_error": head["E"],

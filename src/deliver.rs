@@ -42,8 +42,9 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     clock.stage(progress, "measure");
     measure(model(baked.stand_in.as_ref().unwrap_or(input)), &baked.left_out, &mut asset)?;
     clock.stage(progress, "encode");
-    // Encoding what was decoded changes nothing but the measured error.
+    // Encoding what was decoded changes nothing but the measured error, which the header rounds.
     let bytes = format::encode(&asset)?;
+    let asset = format::decode(&bytes, &format::Limits::default())?;
     let mut stages = baked.stages.clone();
     stages.extend(clock.finish());
     Ok(Delivery { bytes, asset, stages, baked })

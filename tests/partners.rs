@@ -91,7 +91,8 @@ fn holes_and_slots_come_out() {
         // What the file says of its fit counts what is cut away.
         let points = fit::points(deliver::model(&input), &[]);
         let found = fit::fit(&points, asset, fit::REACH * asset.max_error);
-        assert!(found.uncovered == 0 && found.accuracy == asset.fit, "{name}: {found:?}");
+        let off = (found.accuracy.max / asset.fit.max - 1.0).abs();
+        assert!(found.uncovered == 0 && off <= f64::from(f32::EPSILON), "{name}: {found:?}");
         let back = format::decode(&delivery.bytes, &format::Limits::default()).unwrap();
         assert!(&back == asset && format::encode(&back).unwrap() == delivery.bytes, "{name}");
     }

@@ -279,7 +279,7 @@ fn write_vectors() {
     let bytes = encode(&worked_example()).unwrap();
     let fields = [
         (8, "magic"),
-        (4, "version 1, chunks, common kind (none)"),
+        (4, "version 2, chunks, reserved"),
         (8, "required: quadrics, clips; optional: colours"),
         (12, "splats, straight clips, curved clips"),
         (8, "steps, guesses"),
@@ -289,9 +289,9 @@ fn write_vectors() {
         (8, "origin z"),
         (8, "diagonal"),
         (8, "max error"),
-        (8, "fit rms"),
-        (8, "fit p99"),
-        (8, "fit max"),
+        (4, "fit rms"),
+        (4, "fit p99"),
+        (4, "fit max"),
     ];
     let mut at = 0;
     for (count, comment) in fields {

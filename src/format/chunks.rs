@@ -3,17 +3,10 @@
 use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, Entry, Header};
 use super::limits::Limits;
 use super::partners;
-use super::tape::STREAMS;
 use crate::error::{Error, Result};
 
-/// Ids of the chunks of symbols, by [`super::tape::Stream`].
-pub const STREAM_IDS: [[u8; 4]; STREAMS] = [
-    *b"KIND", *b"CELL", *b"SIZE", *b"SHAP", *b"NORM", *b"BEND", *b"SPIN", *b"MORE", *b"ENDS", *b"CTRL",
-    *b"RHO ",
-];
-
-/// Id of the chunk of extra bits.
-pub const BITS_ID: [u8; 4] = *b"BITS";
+/// Id of the chunk of splats.
+pub const SPLATS_ID: [u8; 4] = *b"SPLT";
 
 /// Id of the chunk of colours.
 pub const COLOR_ID: [u8; 4] = *b"COLR";
@@ -21,40 +14,29 @@ pub const COLOR_ID: [u8; 4] = *b"COLR";
 /// Id of the chunk of clip partners.
 pub const PARTNERS_ID: [u8; 4] = *b"PART";
 
-/// Extra bits of one splat or clip curve fill at most this many bytes.
+/// A splat, and a clip curve, takes at most this many bytes.
 ///
-/// Cell 98; place 3 x 24 and 24; radii 2 x 9; normal 2 x 60; sagittas 2 x 41; turn 40; escape
-/// and counts 3 x 15: 499 bits a splat. Ends 2 x 39; control 2 x 41; rho 41: 201 bits a clip.
-const EXTRA_BYTES: u64 = 64;
+/// A symbol costs at most 8 times 12 bits. A splat has 12 of them (kind, cell, two radii, two each of
+/// normal and sagittas, turn, escape and two counts) and these extra bits: cell 98; place 3 x 24 and 24;
+/// radii 2 x 9; normal 2 x 60; sagittas 2 x 41; turn 40; escape and counts 3 x 15: 207 bytes in all. A clip
+/// curve has 5, and 201 bits: 86 bytes.
+const MOST_EACH: u64 = 208;
+
+/// A byte holds at most this many splats, so that what is allocated for splats is in proportion to the
+/// file: each has at least five symbols, each of which costs at least 8 times 0.001 bits, and those that
+/// [`super::encode`] writes have at least two bits of a place in a cell.
+pub const MOST_IN_BYTE: u64 = 128;
 
 /// The largest decoded length that the counts in the header allow; `None` for an unknown id.
 #[must_use]
 pub fn most_bytes(id: [u8; 4], header: &Header) -> Option<u64> {
     let splats = u64::from(header.splats);
-    let (straight, curved) = (u64::from(header.straight), u64::from(header.curved));
-    let by_stream = [
-        splats,
-        splats,
-        splats,
-        splats,
-        2 * splats,
-        2 * splats,
-        splats,
-        3 * splats,
-        2 * (straight + curved),
-        2 * curved,
-        curved,
-    ];
-    if id == BITS_ID {
-        return Some(EXTRA_BYTES * (splats + straight + curved));
+    match id {
+        SPLATS_ID => Some(MOST_EACH * (splats + u64::from(header.straight) + u64::from(header.curved))),
+        COLOR_ID => Some(3 * splats),
+        PARTNERS_ID => Some(partners::MOST_BYTES * splats),
+        _ => None,
     }
-    if id == COLOR_ID {
-        return Some(3 * splats);
-    }
-    if id == PARTNERS_ID {
-        return Some(partners::MOST_BYTES * splats);
-    }
-    STREAM_IDS.iter().position(|known| *known == id).map(|stream| by_stream[stream])
 }
 
 /// The chunks of a file in place: each known entry with its bytes.

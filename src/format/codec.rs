@@ -12,28 +12,36 @@ pub const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// High enough that more buys less than a percent; chunks are small, so time is no matter.
 const LEVEL: i32 = 19;
 
-/// The chunk's table entry, and its bytes in the file.
+/// A chunk's table entry, and its bytes in the file.
+pub type Coded = (Entry, Vec<u8>);
+
+/// A chunk as zstd codes it.
 ///
 /// # Errors
 /// [`Error::Internal`] if zstd fails, [`Error::Usage`] for 4 GiB and more.
-pub fn code(id: [u8; 4], required: u8, raw: &[u8]) -> Result<(Entry, Vec<u8>)> {
+pub fn code(id: [u8; 4], required: u8, raw: &[u8]) -> Result<Coded> {
     let frame = zstd::bulk::compress(raw, LEVEL)
         .map_err(|error| Error::Internal(format!("zstd refused: {error}")))?;
-    let (flag, coded) = match frame.strip_prefix(&ZSTD_MAGIC) {
-        Some(frame) if frame.len() < raw.len() => (CHUNK_ZSTD, frame.to_vec()),
-        _ => (0, raw.to_vec()),
+    match frame.strip_prefix(&ZSTD_MAGIC) {
+        Some(frame) if frame.len() < raw.len() => entry(id, required | CHUNK_ZSTD, raw.len(), frame.to_vec()),
+        _ => bare(id, required, raw.to_vec()),
+    }
+}
+
+/// The same for bytes that zstd would make no fewer.
+///
+/// # Errors
+/// [`Error::Usage`] for 4 GiB and more.
+pub fn bare(id: [u8; 4], required: u8, raw: Vec<u8>) -> Result<Coded> {
+    entry(id, required, raw.len(), raw)
+}
+
+fn entry(id: [u8; 4], flags: u8, raw: usize, coded: Vec<u8>) -> Result<Coded> {
+    let length = |bytes: usize| {
+        u32::try_from(bytes).map_err(|_| Error::Usage("a chunk passes 4 GiB; split the model".into()))
     };
-    let length = |bytes: &[u8]| {
-        u32::try_from(bytes.len()).map_err(|_| Error::Usage("a chunk passes 4 GiB; split the model".into()))
-    };
-    let entry = Entry {
-        id,
-        flags: required | flag,
-        raw: length(raw)?,
-        coded: length(&coded)?,
-        check: crc32fast::hash(&coded),
-    };
-    Ok((entry, coded))
+    let check = crc32fast::hash(&coded);
+    Ok((Entry { id, flags, raw: length(raw)?, coded: length(coded.len())?, check }, coded))
 }
 
 /// The chunk's bytes decoded: exactly `entry.raw` of them.

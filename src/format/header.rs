@@ -6,7 +6,6 @@ use super::grid::{GUESS_BEND, GUESS_SPIN, Grids, Steps};
 use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, KNOWN_REQUIRED};
 use super::limits::Limits;
 use super::record::Record;
-use super::write::common_kind;
 use crate::error::{Error, Result};
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::frame::{EXPONENT_LIMIT, Frame};
@@ -22,7 +21,7 @@ pub const MOST_BUDGET: f64 = 16.0;
 pub const DIAGONAL_RANGE: f64 = (1_u64 << 60) as f64;
 
 /// Refuses numbers that no header may state, in words that name the field.
-fn fault(frame: &Frame, diagonal: f64, max_error: f64, fit: &[f64; 3]) -> Option<(&'static str, String)> {
+fn fault(frame: &Frame, diagonal: f64, max_error: f64, fit: &[f32; 3]) -> Option<(&'static str, String)> {
     // Every condition is phrased so that a NaN fails it.
     if !frame.origin.is_finite() {
         return Some(("origin", format!("{} is not finite", frame.origin)));
@@ -36,8 +35,25 @@ fn fault(frame: &Frame, diagonal: f64, max_error: f64, fit: &[f64; 3]) -> Option
     if !(LEAST_BUDGET * diagonal..=MOST_BUDGET * diagonal).contains(&max_error) {
         return Some(("max error", format!("{max_error} is not within 2^-24 to 16 diagonals of {diagonal}")));
     }
-    let bad = fit.iter().find(|value| !(0.0..=f64::MAX).contains(*value))?;
-    Some(("fit", format!("{bad} is not a finite distance")))
+    let bad = fit.iter().find(|part| !(0.0..=f32::MAX).contains(*part))?;
+    Some(("fit", format!("is {bad} of the budget, not a finite part")))
+}
+
+/// The achieved error in parts of the budget. No more digits are kept than mean something; one within the
+/// budget stays within it.
+fn parts(asset: &Asset) -> [f32; 3] {
+    [asset.fit.rms, asset.fit.p99, asset.fit.max].map(|error| (error / asset.max_error) as f32)
+}
+
+/// The achieved error as a file gives it back.
+#[must_use]
+pub fn snapped_fit(asset: &Asset) -> Accuracy {
+    accuracy(parts(asset), asset.max_error)
+}
+
+fn accuracy(parts: [f32; 3], max_error: f64) -> Accuracy {
+    let [rms, p99, max] = parts.map(|part| f64::from(part) * max_error);
+    Accuracy { rms, p99, max }
 }
 
 /// Refuses an asset whose header no file can hold.
@@ -45,8 +61,7 @@ fn fault(frame: &Frame, diagonal: f64, max_error: f64, fit: &[f64; 3]) -> Option
 /// # Errors
 /// [`Error::Usage`].
 pub fn check_asset(asset: &Asset) -> Result<()> {
-    let fit = [asset.fit.rms, asset.fit.p99, asset.fit.max];
-    match fault(&asset.frame, asset.diagonal, asset.max_error, &fit) {
+    match fault(&asset.frame, asset.diagonal, asset.max_error, &parts(asset)) {
         Some((field, why)) => Err(Error::Usage(format!("cannot store the asset: {field} {why}"))),
         None => Ok(()),
     }
@@ -74,14 +89,14 @@ pub fn header_of(asset: &Asset, grids: &Grids, records: &[Record], chunks: usize
         straight: count(straight)?,
         curved: count(curved)?,
         chunks: chunks as u8,
-        common_kind: common_kind(records).unwrap_or(0),
+        reserved: 0,
         steps: [steps.cell, steps.height, steps.slide, steps.tilt, steps.bend, steps.spin, steps.clip],
         guesses: grids.guesses,
         exponent: asset.frame.exponent,
         origin: asset.frame.origin.to_array(),
         diagonal: asset.diagonal,
         max_error: asset.max_error,
-        fit: [asset.fit.rms, asset.fit.p99, asset.fit.max],
+        fit: parts(asset),
     })
 }
 
@@ -95,6 +110,9 @@ impl Header {
         if unknown != 0 {
             let what = format!("{unknown:#010x} are unknown to this reader; update it");
             return Err(Error::format("required features", what));
+        }
+        if self.reserved != 0 {
+            return Err(Error::format("reserved byte", format!("is {}, not 0", self.reserved)));
         }
         if let Some((field, why)) = fault(&self.frame(), self.diagonal, self.max_error, &self.fit) {
             return Err(Error::format(field, why));
@@ -127,6 +145,6 @@ impl Header {
     /// The achieved error.
     #[must_use]
     pub fn accuracy(&self) -> Accuracy {
-        Accuracy { rms: self.fit[0], p99: self.fit[1], max: self.fit[2] }
+        accuracy(self.fit, self.max_error)
     }
 }

@@ -1,10 +1,10 @@
-//! What a file holds, without decoding it.
+//! What a file holds, and what of it takes how many bytes.
 
-use super::chunks::{COLOR_ID, PARTNERS_ID, STREAM_IDS, most_bytes};
-use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, HAS_COLORS, VERSION, read_head};
+use super::chunks::{COLOR_ID, Chunks, PARTNERS_ID, SPLATS_ID, most_bytes};
+use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, HAS_COLORS, Header, VERSION, read_head};
 use super::limits::Limits;
-use super::read::open;
-use super::tape::Stream;
+use super::read::{open, read_splats};
+use super::tape::{PARTS, Reader};
 use crate::error::Result;
 
 /// A summary of a file.
@@ -28,6 +28,8 @@ pub struct FileInfo {
     pub curved_clips: u32,
     /// The chunks in the order of the file.
     pub chunks: Vec<ChunkInfo>,
+    /// What the chunk of splats tells of, and what each takes of it.
+    pub fields: Vec<FieldInfo>,
     /// What a file may hold and this one does not.
     pub absent: Vec<Absent>,
 }
@@ -49,6 +51,15 @@ pub struct ChunkInfo {
     pub coded_bytes: u64,
 }
 
+/// A part of what is told of splats.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FieldInfo {
+    /// Its name in `format-spec.md`, or `place`: bits that say where in a cell a centre lies.
+    pub name: String,
+    /// Bytes that it takes, to their fractions.
+    pub bytes: f64,
+}
+
 /// Something optional that a file does without.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Absent {
@@ -61,23 +72,16 @@ pub struct Absent {
 }
 
 /// What may be absent: where it would be, what it is, why it is not there.
-const OPTIONAL: [([u8; 4], &str, &str); 10] = [
-    (STREAM_IDS[Stream::Kind as usize], "kinds", "all splats are of one kind"),
-    (STREAM_IDS[Stream::Shape as usize], "smaller radii", "every splat is round"),
-    (STREAM_IDS[Stream::Bend as usize], "curvatures", "every splat is flat"),
-    (STREAM_IDS[Stream::Spin as usize], "turns", "every splat looks the same however it is turned"),
-    (STREAM_IDS[Stream::More as usize], "escapes", "no splat has several clips or a high fineness"),
-    (STREAM_IDS[Stream::Ends as usize], "clip curves", "no splat is cut"),
-    (STREAM_IDS[Stream::Ctrl as usize], "clip control points", "no clip curve is curved"),
-    (STREAM_IDS[Stream::Rho as usize], "clip shapes", "no clip curve is curved"),
+const OPTIONAL: [([u8; 4], &str, &str); 3] = [
+    (SPLATS_ID, "splats", "there are none"),
     (COLOR_ID, "colours", "the splats have none"),
     (PARTNERS_ID, "clip partners", "no splat is cut by another"),
 ];
 
-/// Sums up a file; checks header, table and checksums but decodes no chunk.
+/// Sums up a file; checks all but what is in optional chunks.
 ///
 /// # Errors
-/// As [`super::decode`], as far as header and table go.
+/// As [`super::decode`].
 pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<FileInfo> {
     let (header, chunks) = open(bytes, limits)?;
     let (_, table, head_bytes) = read_head(bytes)?;
@@ -110,6 +114,16 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<FileInfo> {
         straight_clips: header.straight,
         curved_clips: header.curved,
         chunks: table.iter().map(chunk).collect(),
+        fields: fields(&header, &chunks)?,
         absent,
     })
+}
+
+/// What each of [`PARTS`] takes, where it takes anything.
+fn fields(header: &Header, chunks: &Chunks<'_>) -> Result<Vec<FieldInfo>> {
+    let bytes = chunks.bytes(SPLATS_ID)?;
+    let mut reader = Reader::counting(&bytes);
+    read_splats(header, &bytes, &mut reader)?;
+    let taken = PARTS.iter().zip(reader.spent()).filter(|(_, bits)| *bits > 0.0);
+    Ok(taken.map(|(name, bits)| FieldInfo { name: (*name).into(), bytes: bits / 8.0 }).collect())
 }

@@ -6,10 +6,10 @@ use crate::error::{Error, Result};
 pub const MAGIC: [u8; 8] = *b"\x89QSP\r\n\x1a\n";
 
 /// The version this crate writes and reads.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// Bytes of the header.
-pub const HEADER_BYTES: usize = 108;
+pub const HEADER_BYTES: usize = 96;
 
 /// Bytes of one entry of the table of chunks.
 pub const ENTRY_BYTES: usize = 17;
@@ -48,8 +48,8 @@ pub struct Header {
     pub curved: u32,
     /// Entries of the table of chunks.
     pub chunks: u8,
-    /// The kind of every splat when the chunk `KIND` is absent, else 0.
-    pub common_kind: u8,
+    /// Kept for later: 0.
+    pub reserved: u8,
     /// `cell, height, slide, tilt, bend, spin, clip`.
     pub steps: [u8; 7],
     /// What is guessed from the nearest splat: 1 the sagittas, 2 the turn.
@@ -62,8 +62,8 @@ pub struct Header {
     pub diagonal: f64,
     /// Error budget, model units.
     pub max_error: f64,
-    /// Achieved `rms, p99, max`, model units.
-    pub fit: [f64; 3],
+    /// Achieved `rms, p99, max`, parts of `max_error`.
+    pub fit: [f32; 3],
 }
 
 /// One entry of the table of chunks.
@@ -99,15 +99,18 @@ pub fn write_head(header: &Header, table: &[Entry]) -> Vec<u8> {
     out.extend(MAGIC);
     out.extend(VERSION.to_le_bytes());
     out.push(header.chunks);
-    out.push(header.common_kind);
+    out.push(header.reserved);
     for word in [header.required, header.optional, header.splats, header.straight, header.curved] {
         out.extend(word.to_le_bytes());
     }
     out.extend(header.steps);
     out.push(header.guesses);
     out.extend(header.exponent.to_le_bytes());
-    for value in header.origin.iter().chain([&header.diagonal, &header.max_error]).chain(&header.fit) {
+    for value in header.origin.iter().chain([&header.diagonal, &header.max_error]) {
         out.extend(value.to_le_bytes());
+    }
+    for part in header.fit {
+        out.extend(part.to_le_bytes());
     }
     for entry in table {
         out.extend(entry.id);
@@ -140,6 +143,10 @@ impl Fields<'_> {
     fn float(&mut self, name: &str) -> Result<f64> {
         Ok(f64::from_le_bytes(self.take(name)?))
     }
+
+    fn part(&mut self, name: &str) -> Result<f32> {
+        Ok(f32::from_le_bytes(self.take(name)?))
+    }
 }
 
 /// Parses header and table; also gives the offset of the first chunk.
@@ -155,13 +162,14 @@ pub fn read_head(bytes: &[u8]) -> Result<(Header, Vec<Entry>, usize)> {
     }
     let version = u16::from_le_bytes(fields.take("version")?);
     if version != VERSION {
+        let remedy = if version > VERSION { "update it" } else { "bake the file anew" };
         return Err(Error::format(
             "version",
-            format!("{version}, but this reader knows {VERSION}; update it"),
+            format!("{version}, but this reader knows {VERSION}; {remedy}"),
         ));
     }
-    let [chunks, common_kind] = fields.take("chunk count")?;
-    let header = read_fields(&mut fields, chunks, common_kind)?;
+    let [chunks, reserved] = fields.take("chunk count")?;
+    let header = read_fields(&mut fields, chunks, reserved)?;
     let table = (0..chunks).map(|n| read_entry(&mut fields, n)).collect::<Result<Vec<_>>>()?;
     let end = bytes.len() - fields.0.len();
     let stated = fields.word("header checksum")?;
@@ -172,7 +180,7 @@ pub fn read_head(bytes: &[u8]) -> Result<(Header, Vec<Entry>, usize)> {
 }
 
 /// The header after its first twelve bytes.
-fn read_fields(fields: &mut Fields<'_>, chunks: u8, common_kind: u8) -> Result<Header> {
+fn read_fields(fields: &mut Fields<'_>, chunks: u8, reserved: u8) -> Result<Header> {
     let required = fields.word("required features")?;
     let optional = fields.word("optional features")?;
     let splats = fields.word("splat count")?;
@@ -184,7 +192,8 @@ fn read_fields(fields: &mut Fields<'_>, chunks: u8, common_kind: u8) -> Result<H
     let mut float = |name| fields.float(name);
     let origin = [float("origin")?, float("origin")?, float("origin")?];
     let (diagonal, max_error) = (float("diagonal")?, float("max error")?);
-    let fit = [float("fit rms")?, float("fit p99")?, float("fit max")?];
+    let mut part = |name| fields.part(name);
+    let fit = [part("fit rms")?, part("fit p99")?, part("fit max")?];
     Ok(Header {
         required,
         optional,
@@ -192,7 +201,7 @@ fn read_fields(fields: &mut Fields<'_>, chunks: u8, common_kind: u8) -> Result<H
         straight,
         curved,
         chunks,
-        common_kind,
+        reserved,
         steps,
         guesses,
         exponent,
@@ -225,7 +234,7 @@ mod tests {
             straight: 4,
             curved: 5,
             chunks: 2,
-            common_kind: 6,
+            reserved: 6,
             steps: [1, 2, 3, 4, 5, 6, 7],
             guesses: 3,
             exponent: -8,

@@ -1,13 +1,13 @@
-//! The `.qsplat` file, version 1: `format-spec.md` is its normative description.
+//! The `.qsplat` file, version 2: `format-spec.md` is its normative description.
 //!
 //! Writing, in order:
 //! 1. [`quantize`] rounds each splat to the grids of [`grid`], within a proved share of the
 //!    error budget, and gives a record of whole numbers.
 //! 2. `order` sorts the records along a Morton curve.
 //! 3. `walk` carries each record onto a tape of symbols and extra bits, as differences from
-//!    what `predict` guesses from the splats before it.
-//! 4. `codec` codes each stream of symbols with zstd; `layout` puts header, table and chunks
-//!    together.
+//!    what `predict` guesses from the splats before it; `coder` makes each symbol as short as its
+//!    field's symbols before it tell.
+//! 4. `codec` codes what is optional with zstd; `layout` puts header, table and chunks together.
 //!
 //! Reading does the same backwards, under [`Limits`].
 //!
@@ -45,6 +45,7 @@ mod bound;
 mod chunks;
 mod clip;
 mod codec;
+mod coder;
 mod color;
 pub mod grid;
 mod header;
@@ -72,7 +73,7 @@ mod planted;
 #[allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, clippy::float_cmp)]
 mod promises;
 
-pub use inspect::{Absent, ChunkInfo, FileInfo, inspect};
+pub use inspect::{Absent, ChunkInfo, FieldInfo, FileInfo, inspect};
 pub use layout::MAGIC;
 pub use limits::Limits;
 pub use read::decode;

@@ -237,9 +237,7 @@ fn a_bumpy_sphere_takes_few_bytes() {
         let each = bytes.len() as f64 / count as f64;
         println!("{count} splats: {} bytes, {each:.2} a splat", bytes.len());
         assert!(each < limit);
-        for chunk in inspect(&bytes, &Limits::default()).unwrap().chunks {
-            println!("  {} {} -> {}", chunk.id, chunk.raw_bytes, chunk.coded_bytes);
-        }
+        println!("  {:?}", inspect(&bytes, &Limits::default()).unwrap().fields);
     }
 }
 
@@ -250,25 +248,34 @@ fn kinds_that_need_less_say_less() {
         splat.curvature = DVec2::ZERO;
     }
     let flat = encode(&made).unwrap();
-    let info = inspect(&flat, &Limits::default()).unwrap();
-    assert!(info.chunks.iter().all(|chunk| chunk.id != "BEND") && info.absent.iter().any(|a| a.id == "BEND"));
     for splat in &mut made.splats {
         splat.radii = DVec2::splat(splat.radii.y);
     }
     let round = encode(&made).unwrap();
-    let ids: Vec<_> =
-        inspect(&round, &Limits::default()).unwrap().chunks.into_iter().map(|chunk| chunk.id).collect();
-    println!("bytes: {} flat, {} flat and round: {ids:?}", flat.len(), round.len());
-    assert!(round.len() + 800 < flat.len());
-    assert!(ids.iter().all(|id| !["SHAP", "SPIN", "ENDS", "COLR"].contains(&id.as_str())));
+    assert!(10 * round.len() < 9 * flat.len(), "{} flat, {} flat and round", flat.len(), round.len());
+    let names = |bytes: &[u8]| -> Vec<String> {
+        inspect(bytes, &Limits::default()).unwrap().fields.into_iter().map(|field| field.name).collect()
+    };
+    let (flat, round) = (names(&flat), names(&round));
+    assert!(flat.contains(&"shape".into()) && !flat.contains(&"bend".into()), "{flat:?}");
+    assert_eq!(round, ["kind", "cell", "size", "norm", "place"]);
+}
+
+#[test]
+fn fields_add_up_to_their_chunk() {
+    let bytes = encode(&bumpy_asset(300, 40.0, 3)).unwrap();
+    let info = inspect(&bytes, &Limits::default()).unwrap();
+    let fields: f64 = info.fields.iter().map(|field| field.bytes).sum();
+    assert_eq!((info.chunks.len(), info.chunks[0].id.as_str()), (1, "SPLT"));
+    assert!((info.chunks[0].coded_bytes as f64 - fields).abs() < 2.0, "{fields}: {info:?}");
 }
 
 #[test]
 fn an_empty_asset_comes_back() {
     let made = asset(Vec::new(), 1e-3);
     let bytes = encode(&made).unwrap();
-    assert_eq!(decode(&bytes, &Limits::default()).unwrap(), made);
-    assert_eq!(bytes.len(), 112);
+    assert_eq!(decode(&bytes, &Limits::default()).unwrap(), snap(&made).unwrap());
+    assert_eq!(bytes.len(), 100);
 }
 
 #[test]

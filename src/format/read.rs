@@ -1,19 +1,19 @@
 //! From the bytes of a file to an asset.
 
-use super::chunks::{BITS_ID, COLOR_ID, Chunks, PARTNERS_ID, STREAM_IDS};
+use super::chunks::{COLOR_ID, Chunks, MOST_IN_BYTE, PARTNERS_ID, SPLATS_ID};
 use super::color;
 use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, read_head};
 use super::limits::Limits;
 use super::partners;
 use super::predict::History;
 use super::record::Record;
-use super::tape::{Reader, STREAMS};
+use super::tape::Reader;
 use super::walk::walk;
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
 use crate::model::splat::Splat;
 
-/// The asset in the bytes of a `.qsplat` file, version 1.
+/// The asset in the bytes of a `.qsplat` file, version 2.
 ///
 /// Every number of the result is finite and within the ranges of `format-spec.md`: radii are
 /// positive, axes orthonormal to 1e-15, `rho` in `(0, 1]` for curved clips. The result is the
@@ -48,33 +48,30 @@ pub(super) fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(Header, Chun
 }
 
 fn splats(header: &Header, chunks: &Chunks<'_>) -> Result<Vec<Splat>> {
-    let mut raw: [Vec<u8>; STREAMS] = Default::default();
-    for (raw, id) in raw.iter_mut().zip(STREAM_IDS) {
-        *raw = chunks.bytes(id)?;
+    let bytes = chunks.bytes(SPLATS_ID)?;
+    read_splats(header, &bytes, &mut Reader::new(&bytes))
+}
+
+/// The splats in the bytes of their chunk, read by a reader of these bytes.
+pub(super) fn read_splats(header: &Header, bytes: &[u8], reader: &mut Reader<'_>) -> Result<Vec<Splat>> {
+    // What follows allocates in proportion to the splats.
+    if u64::from(header.splats) > MOST_IN_BYTE * bytes.len() as u64 {
+        let what = format!("holds {} bytes, too few for {} splats", bytes.len(), header.splats);
+        return Err(Error::format("chunk SPLT", what));
     }
-    let has_kinds = !raw[0].is_empty();
-    if has_kinds && header.common_kind != 0 {
-        return Err(Error::format("common kind", "is not zero although there is a chunk of kinds"));
-    }
-    // Every splat takes at least one of these, so what follows allocates in proportion to them.
-    if raw[1].len() != header.splats as usize {
-        let what = format!("holds {} symbols for {} splats", raw[1].len(), header.splats);
-        return Err(Error::format("chunk CELL", what));
-    }
-    let bits = chunks.bytes(BITS_ID)?;
-    let common = (!has_kinds).then_some(header.common_kind);
-    let mut reader = Reader::new(raw.each_ref().map(Vec::as_slice), &bits, common);
     let grids = header.grids();
     let mut history = History::default();
     let mut found = Found::default();
     for _ in 0..header.splats {
         let mut record = Record::default();
-        walk(&mut record, &history, &grids, &mut reader)?;
+        walk(&mut record, &history, &grids, reader)?;
         found.add(&record);
         let splat = grids.splat(&record);
         history.push(record, splat);
     }
-    reader.finish()?;
+    if header.splats > 0 {
+        reader.finish()?;
+    }
     found.check(header)?;
     Ok(history.into_splats())
 }

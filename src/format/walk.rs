@@ -7,7 +7,7 @@ use super::octahedral;
 use super::order::{MORTON_END, cell, morton};
 use super::predict::{History, bend_near, normal_near, spin_near};
 use super::record::{ClipRecord, Record};
-use super::tape::{Stream, Tape};
+use super::tape::{Field, Tape};
 use crate::error::{Error, Result};
 use crate::model::splat::Splat;
 
@@ -15,14 +15,14 @@ use crate::model::splat::Splat;
 pub const QUADRIC: u8 = 1;
 /// Kind bit: the radii differ.
 pub const LONG: u8 = 2;
-/// Kind bits 2 and 3: no clip curve, one straight, one curved, or counts in the stream `More`.
+/// Kind bits 2 and 3: no clip curve, one straight, one curved, or counts in the field `More`.
 pub const CLIP_SHIFT: u8 = 2;
-/// Kind bits 4 and 5: the fineness; 3 means 3 and what the stream `More` adds.
+/// Kind bits 4 and 5: the fineness; 3 means 3 and what the field `More` adds.
 pub const FINENESS_SHIFT: u8 = 4;
 /// Kind bits 6 and 7: the turn of the fine axis, 0 to 2.
 pub const TURN_SHIFT: u8 = 6;
 
-/// The fineness from which on the stream `More` holds the rest.
+/// The fineness from which on the field `More` holds the rest.
 const FINENESS_ESCAPE: u8 = 3;
 
 /// A splat has at most this many straight and this many curved clips.
@@ -78,14 +78,14 @@ fn mode(record: &mut Record, kind: u8, tape: &mut impl Tape) -> Result<()> {
     let stated = kind >> FINENESS_SHIFT & 3;
     if stated == FINENESS_ESCAPE {
         let mut more = u64::from(record.fineness.saturating_sub(stated));
-        tape.number(Stream::More, &mut more, u64::from(MAX_FINENESS - stated))?;
+        tape.number(Field::More, &mut more, u64::from(MAX_FINENESS - stated))?;
         record.fineness = stated + more as u8;
     } else {
         record.fineness = stated;
     }
     record.turn = kind >> TURN_SHIFT;
     if record.turn > 2 {
-        return Err(Error::format("stream Kind", format!("kind {kind:#04x} turns the axis by 3")));
+        return Err(Error::format("field Kind", format!("kind {kind:#04x} turns the axis by 3")));
     }
     Ok(())
 }
@@ -94,9 +94,9 @@ fn mode(record: &mut Record, kind: u8, tape: &mut impl Tape) -> Result<()> {
 fn in_order(record: &mut Record, history: &History, tape: &mut impl Tape) -> Result<()> {
     let before = history.last().map_or(0, |last| morton(last.cell));
     let mut step = morton(record.cell).saturating_sub(before);
-    tape.wide(Stream::Cell, &mut step)?;
+    tape.wide(Field::Cell, &mut step)?;
     if before + step >= MORTON_END {
-        return Err(Error::format("stream Cell", "leads out of the space of cells"));
+        return Err(Error::format("field Cell", "leads out of the space of cells"));
     }
     record.cell = cell(before + step);
     Ok(())
@@ -106,21 +106,21 @@ fn in_order(record: &mut Record, history: &History, tape: &mut impl Tape) -> Res
 fn sizes(record: &mut Record, near: Option<&Record>, kind: u8, tape: &mut impl Tape) -> Result<()> {
     let mut large = i64::from(record.sizes[0]);
     tape.near(
-        Stream::Size,
+        Field::Size,
         &mut large,
         near.map_or(0, |n| i64::from(n.sizes[0])),
         u64::from(RADIUS_CODES - 1),
     )?;
     if large < 0 {
-        return Err(Error::format("stream Size", "has a negative radius"));
+        return Err(Error::format("field Size", "has a negative radius"));
     }
     let mut less = 0;
     if kind & LONG != 0 {
         if large == 0 {
-            return Err(Error::format("stream Size", "has a long splat of the least radius"));
+            return Err(Error::format("field Size", "has a long splat of the least radius"));
         }
         less = u64::from(record.sizes[0].saturating_sub(record.sizes[1])).saturating_sub(1);
-        tape.number(Stream::Shape, &mut less, large as u64 - 1)?;
+        tape.number(Field::Shape, &mut less, large as u64 - 1)?;
         less += 1;
     }
     record.sizes = [large as u16, (large - less as i64) as u16];
@@ -133,7 +133,7 @@ fn normal(record: &mut Record, near: Option<&Splat>, grids: &Grids, tape: &mut i
     let place = grids.coarse_center(record);
     let guess = near.map_or([0, 0], |near| octahedral::guess(normal_near(near, place), steps));
     for (value, guess) in record.normal.iter_mut().zip(guess) {
-        tape.near(Stream::Norm, value, guess, steps)?;
+        tape.near(Field::Norm, value, guess, steps)?;
     }
     Ok(())
 }
@@ -156,10 +156,10 @@ fn bend(
         _ => [0, 0],
     };
     for (value, guess) in record.bend.iter_mut().zip(guess) {
-        tape.near(Stream::Bend, value, guess, MAX_BEND)?;
+        tape.near(Field::Bend, value, guess, MAX_BEND)?;
     }
     if record.bend == [0; 2] {
-        return Err(Error::format("stream Bend", "has a quadric without curvature"));
+        return Err(Error::format("field Bend", "has a quadric without curvature"));
     }
     Ok(())
 }
@@ -176,9 +176,9 @@ fn spin(record: &mut Record, near: Option<&Splat>, grids: &Grids, tape: &mut imp
         _ => 0,
     };
     let mut off = (record.spin as i64 - guess + half).rem_euclid(count) - half;
-    tape.near(Stream::Spin, &mut off, 0, half as u64)?;
+    tape.near(Field::Spin, &mut off, 0, half as u64)?;
     if off == half {
-        return Err(Error::format("stream Spin", format!("{off} is not below {half}")));
+        return Err(Error::format("field Spin", format!("{off} is not below {half}")));
     }
     record.spin = (guess + off).rem_euclid(count) as u64;
     Ok(())
@@ -194,10 +194,10 @@ fn clips(record: &mut Record, kind: u8, grids: &Grids, tape: &mut impl Tape) -> 
         2 => counts = [0, 1],
         _ => {
             for count in &mut counts {
-                tape.number(Stream::More, count, MAX_CLIPS)?;
+                tape.number(Field::More, count, MAX_CLIPS)?;
             }
             if counts[0] + counts[1] < 2 {
-                return Err(Error::format("stream More", "counts clip curves that the kind can state"));
+                return Err(Error::format("field More", "counts clip curves that the kind can state"));
             }
         }
     }
@@ -213,20 +213,20 @@ fn clips(record: &mut Record, kind: u8, grids: &Grids, tape: &mut impl Tape) -> 
 
 /// One clip curve.
 fn one_clip(clip: &mut ClipRecord, curved: bool, border: u64, tape: &mut impl Tape) -> Result<()> {
-    tape.number(Stream::Ends, &mut clip.start, border - 1)?;
+    tape.number(Field::Ends, &mut clip.start, border - 1)?;
     let mut beyond = clip.sweep.saturating_sub(1);
-    tape.number(Stream::Ends, &mut beyond, border - 2)?;
+    tape.number(Field::Ends, &mut beyond, border - 2)?;
     clip.sweep = beyond + 1;
     if curved {
         for value in &mut clip.control {
-            tape.near(Stream::Ctrl, value, 0, CONTROL_LIMIT)?;
+            tape.near(Field::Ctrl, value, 0, CONTROL_LIMIT)?;
         }
         let steps = rho_steps(clip.control);
         if steps == 0 {
-            return Err(Error::format("stream Ctrl", "has a control point on its chord's middle"));
+            return Err(Error::format("field Ctrl", "has a control point on its chord's middle"));
         }
         let mut less = clip.rho.saturating_sub(1);
-        tape.number(Stream::Rho, &mut less, steps - 1)?;
+        tape.number(Field::Rho, &mut less, steps - 1)?;
         clip.rho = less + 1;
     }
     Ok(())

@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::chunks::{BITS_ID, COLOR_ID, PARTNERS_ID, STREAM_IDS};
-use super::codec;
+use super::chunks::{COLOR_ID, PARTNERS_ID, SPLATS_ID};
+use super::codec::{self, Coded};
 use super::color;
 use super::grid::{GUESS_BEND, GUESS_SPIN, Grids};
-use super::header::{check_asset, header_of};
+use super::header::{check_asset, header_of, snapped_fit};
 use super::layout::{CHUNK_REQUIRED, Entry, write_head};
 use super::limits::Limits;
 use super::order;
@@ -14,19 +14,16 @@ use super::partners;
 use super::predict::History;
 use super::quantize::Quantizer;
 use super::record::Record;
-use super::tape::{Stream, Writer};
-use super::walk::{kind, walk};
+use super::tape::Writer;
+use super::walk::walk;
 use crate::error::Result;
 use crate::model::asset::Asset;
 use crate::model::splat::Splat;
 
-/// A chunk: its entry in the table, and its bytes in the file.
-type Coded = (Entry, Vec<u8>);
-
 /// The colour of splats without colours.
 const WHITE: [u8; 3] = [255; 3];
 
-/// The bytes of a `.qsplat` file, version 1.
+/// The bytes of a `.qsplat` file, version 2.
 ///
 /// The splats are rounded to the file's grids (see [`super::quantize`] for what that may move)
 /// and put into the file's own order, so a set of splats gives the same bytes in whatever
@@ -54,7 +51,7 @@ pub fn encode(asset: &Asset) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// The splats of an asset as the file will give them back, in the file's order.
+/// An asset as the file will give it back, its splats in the file's order.
 ///
 /// # Errors
 /// As [`encode`].
@@ -68,7 +65,7 @@ pub fn snap(asset: &Asset) -> Result<Asset> {
     if !partners.is_empty() {
         partners::join(&partners, &mut splats, asset.max_error, &Limits::default())?;
     }
-    Ok(Asset { splats, ..asset.clone() })
+    Ok(Asset { splats, fit: snapped_fit(asset), ..asset.clone() })
 }
 
 fn record(quantizer: &Quantizer, splat: &Splat, has_colors: bool) -> Result<Record> {
@@ -86,8 +83,8 @@ const COMPARED: usize = 8192;
 fn fewest(grids: &Grids, records: &[Record], has_colors: bool) -> Result<(Grids, Vec<Coded>)> {
     let first = &records[..records.len().min(COMPARED)];
     let tried = (0..=GUESS_BEND | GUESS_SPIN).into_par_iter().map(|guesses| {
-        let chunks = chunks(&Grids { guesses, ..*grids }, first, false)?;
-        Ok((chunks.iter().map(|(_, bytes)| bytes.len()).sum::<usize>(), guesses))
+        let bytes = splats(&Grids { guesses, ..*grids }, first)?;
+        Ok((bytes.len(), guesses))
     });
     let best = tried.collect::<Result<Vec<_>>>()?.into_iter().min();
     let grids = Grids { guesses: best.map_or(0, |(_, guesses)| guesses), ..*grids };
@@ -96,6 +93,18 @@ fn fewest(grids: &Grids, records: &[Record], has_colors: bool) -> Result<(Grids,
 
 /// Every chunk that is not empty, coded, in the order of the file.
 fn chunks(grids: &Grids, records: &[Record], has_colors: bool) -> Result<Vec<Coded>> {
+    let mut chunks = Vec::new();
+    if !records.is_empty() {
+        chunks.push(codec::bare(SPLATS_ID, CHUNK_REQUIRED, splats(grids, records)?)?);
+        if has_colors {
+            chunks.push(codec::code(COLOR_ID, 0, &color::split(records))?);
+        }
+    }
+    Ok(chunks)
+}
+
+/// The bytes of the chunk of splats.
+fn splats(grids: &Grids, records: &[Record]) -> Result<Vec<u8>> {
     let mut writer = Writer::default();
     let mut history = History::default();
     for record in records {
@@ -104,27 +113,5 @@ fn chunks(grids: &Grids, records: &[Record], has_colors: bool) -> Result<Vec<Cod
         let splat = grids.splat(&record);
         history.push(record, splat);
     }
-    let (mut symbols, bits) = writer.finish();
-    if common_kind(records).is_some() {
-        symbols[Stream::Kind as usize].clear();
-    }
-    let colors = if has_colors { color::split(records) } else { Vec::new() };
-    let mut chunks = Vec::new();
-    for (id, required, raw) in STREAM_IDS
-        .into_iter()
-        .zip(&symbols)
-        .map(|(id, raw)| (id, CHUNK_REQUIRED, raw))
-        .chain([(BITS_ID, CHUNK_REQUIRED, &bits), (COLOR_ID, 0, &colors)])
-    {
-        if !raw.is_empty() {
-            chunks.push(codec::code(id, required, raw)?);
-        }
-    }
-    Ok(chunks)
-}
-
-/// The kind that all records have, if they have one.
-pub(super) fn common_kind(records: &[Record]) -> Option<u8> {
-    let first = kind(records.first()?);
-    records.iter().all(|record| kind(record) == first).then_some(first)
+    Ok(writer.finish())
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::memory;
 use crate::bake::StageTime;
-use crate::format::{self, ChunkInfo, FileInfo};
+use crate::format::{self, ChunkInfo, FieldInfo, FileInfo};
 use crate::model::asset::Asset;
 pub use crate::sample::lower_bound::LowerBound;
 
@@ -143,6 +143,9 @@ pub struct File {
     pub head_bytes: u64,
     /// The chunks in the order of the file.
     pub chunks: Vec<Chunk>,
+    /// What the chunk of splats tells of.
+    #[serde(default)]
+    pub fields: Vec<Field>,
     /// Chunks that the file does without.
     pub absent: Vec<Absent>,
 }
@@ -157,6 +160,7 @@ impl File {
             raw_bytes: chunk.raw_bytes,
             coded_bytes: chunk.coded_bytes,
         };
+        let field = |field: &FieldInfo| Field { name: field.name.clone(), bytes: field.bytes };
         let absent = |absent: &format::Absent| Absent {
             name: absent.id.clone(),
             what: absent.what.clone(),
@@ -170,6 +174,7 @@ impl File {
             bytes: info.bytes,
             head_bytes: info.head_bytes,
             chunks: info.chunks.iter().map(chunk).collect(),
+            fields: info.fields.iter().map(field).collect(),
             absent: info.absent.iter().map(absent).collect(),
         }
     }
@@ -186,6 +191,15 @@ pub struct Chunk {
     pub raw_bytes: u64,
     /// Bytes in the file.
     pub coded_bytes: u64,
+}
+
+/// A part of what is told of splats.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Field {
+    /// Its name in `format-spec.md`, or `place`.
+    pub name: String,
+    /// Bytes that it takes of the chunk of splats, to their fractions.
+    pub bytes: f64,
 }
 
 /// A chunk that the file does without.

@@ -87,6 +87,11 @@ impl Table {
                 ),
             );
         }
+        let fields: Vec<String> =
+            file.fields.iter().map(|field| format!("{} {:.0}", field.name, field.bytes)).collect();
+        if !fields.is_empty() {
+            self.row("of SPLT", format!("{} bytes", fields.join(", ")));
+        }
     }
 
     fn choice(&mut self, choice: &Choice) {

@@ -29,17 +29,19 @@ fn asset_of(curvature: DVec2, clips: Vec<ClipCurve>) -> Asset {
 }
 
 fn file() -> File {
-    let chunks = vec![Chunk { name: "POSN".into(), coder: "zstd".into(), raw_bytes: 48, coded_bytes: 30 }];
+    let chunks = vec![Chunk { name: "COLR".into(), coder: "zstd".into(), raw_bytes: 48, coded_bytes: 30 }];
+    let fields = vec![Field { name: "norm".into(), bytes: 12.5 }];
     let absent =
-        vec![Absent { name: "COLR".into(), what: "colours".into(), reason: "the splats have none".into() }];
+        vec![Absent { name: "PART".into(), what: "clip partners".into(), reason: "there are none".into() }];
     File {
         path: "a.qsplat".into(),
-        version: 1,
+        version: 2,
         required_features: 3,
         optional_features: 0,
         bytes: 200,
         head_bytes: 170,
         chunks,
+        fields,
         absent,
     }
 }
@@ -171,7 +173,8 @@ fn the_table_names_what_matters() {
         "a.ply",
         "4 (4 flat, 0 cylinder, 0 quadric, 0 clipped)",
         "max 1.50e-4",
-        "POSN",
+        "COLR",
+        "norm 12",
         "sample",
         "kept",
     ] {
