@@ -122,14 +122,13 @@ class Tape:
         for _ in range(8):
             zero, seen = self.odds.get((field, node), (1 << 15, 0))
             bound = (self.range >> 12) * min(max(zero >> 4, 1), 4095)
-            weight = 2 * seen + 3
             if self.above < bound:
                 bit, self.range = 0, bound
-                zero += 2 * (65535 - zero) // weight
+                zero += (65535 - zero) // (seen + 2)
             else:
                 bit, self.range = 1, self.range - bound
                 self.above -= bound
-                zero -= 2 * zero // weight
+                zero -= zero // (seen + 2)
             self.odds[field, node] = zero, min(seen + 1, 62)
             self.settle()
             node = 2 * node + bit

@@ -37,14 +37,15 @@ impl Odds {
         (range >> SHARE_BITS) * u32::from(self.zero >> (16 - SHARE_BITS)).clamp(1, most)
     }
 
-    /// Moves towards a bit by a part that is what Krichevsky and Trofimov (1981) estimate from few bits,
-    /// `1 / (n + 3/2)`, until it is [`MEMORY`]'s.
+    /// Moves towards a bit: from few bits to the estimate of Krichevsky and Trofimov (1981), of `n` bits
+    /// `(zeros + 1/2) / (n + 1)`, and by a fixed part once there are [`MEMORY`] of them.
     fn learn(&mut self, bit: bool) {
-        let (zero, weight) = (u32::from(self.zero), 2 * u32::from(self.seen) + 3);
-        let learnt =
-            if bit { zero - 2 * zero / weight } else { zero + 2 * (u32::from(u16::MAX) - zero) / weight };
-        // Between 0 and 65535 by the line above.
-        self.zero = learnt as u16;
+        let weight = u16::from(self.seen) + 2;
+        if bit {
+            self.zero -= self.zero / weight;
+        } else {
+            self.zero += (u16::MAX - self.zero) / weight;
+        }
         self.seen = (self.seen + 1).min(MEMORY);
     }
 }

@@ -85,9 +85,9 @@ const OPTIONAL: [([u8; 4], &str, &str); 3] = [
 pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<FileInfo> {
     let (header, chunks) = open(bytes, limits)?;
     let (_, table, head_bytes) = read_head(bytes)?;
-    let name = |id: [u8; 4]| String::from_utf8_lossy(&id).trim_end().to_owned();
+    let name = |id: [u8; 4]| String::from_utf8_lossy(&id).into_owned();
     let chunk = |entry: &super::layout::Entry| ChunkInfo {
-        id: entry.name().trim_end().to_owned(),
+        id: entry.name(),
         known: most_bytes(entry.id, &header).is_some(),
         required: entry.flags & CHUNK_REQUIRED != 0,
         coder: if entry.flags & CHUNK_ZSTD != 0 { "zstd" } else { "none" }.to_owned(),
