@@ -89,6 +89,7 @@ def read_chunks(data, count):
             require(flags & 1 == 0, "an unknown required chunk")
             continue
         if flags & 2:
+            require(name != "SPLT", "splats coded by zstd")
             body = unzstd(b"\x28\xb5\x2f\xfd" + body)
         require(len(body) == raw and raw > 0, "a chunk's decoded length")
         chunks[name] = body
@@ -440,7 +441,7 @@ def link(splats, data):
 def decode(data):
     head, count = read_header(data)
     chunks = read_chunks(data, count)
-    require(head["splats"] <= 128 * len(chunks.get("SPLT", b"")), "too few bytes for the splats")
+    require(head["splats"] <= 4 * len(chunks.get("SPLT", b"")), "too few bytes for the splats")
     require(head["splats"] > 0 or "SPLT" not in chunks, "a chunk without splats")
     tape, grids = Tape(chunks.get("SPLT", b"")), Grids(head)
     morton, splats, clips, quadric = 0, [], [0, 0], False

@@ -23,9 +23,8 @@ pub const PARTNERS_ID: [u8; 4] = *b"PART";
 const MOST_EACH: u64 = 208;
 
 /// A byte holds at most this many splats, so that what is allocated for splats is in proportion to the
-/// file: each has at least five symbols, each of which costs at least 8 times 0.001 bits, and those that
-/// [`super::encode`] writes have at least two bits of a place in a cell.
-pub const MOST_IN_BYTE: u64 = 128;
+/// file: on the grids of [`super::encode`] each has at least two bare bits, of its place in a cell.
+pub const MOST_IN_BYTE: u64 = 4;
 
 /// The largest decoded length that the counts in the header allow; `None` for an unknown id.
 #[must_use]
@@ -67,6 +66,9 @@ impl<'a> Chunks<'a> {
             rest = after;
             if crc32fast::hash(bytes) != entry.check {
                 return Err(Error::format(place(), "its checksum does not match; the file is damaged"));
+            }
+            if entry.id == SPLATS_ID && entry.flags & CHUNK_ZSTD != 0 {
+                return Err(Error::format(place(), "is coded by zstd, which makes it no shorter"));
             }
             match most_bytes(entry.id, header) {
                 Some(most) if u64::from(entry.raw) > most || entry.raw == 0 => {

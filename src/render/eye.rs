@@ -121,10 +121,16 @@ impl Eye {
         }
     }
 
+    /// The ray through the middle of a sample.
+    #[must_use]
+    pub fn ray_through(&self, [x, y]: [u32; 2]) -> Ray {
+        self.ray(f64::from(x) + 0.5, f64::from(y) + 0.5)
+    }
+
     /// The place of the model that the ray through the middle of a pixel passes at a view depth.
     #[must_use]
-    pub fn place(&self, [x, y]: [u32; 2], depth: f64) -> DVec3 {
-        let across = self.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).at(depth);
+    pub fn place(&self, pixel: [u32; 2], depth: f64) -> DVec3 {
+        let across = self.ray_through(pixel).at(depth);
         self.position + self.turn_back(across.extend(depth))
     }
 

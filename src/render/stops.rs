@@ -1,7 +1,7 @@
 //! Whether splats stop rays soon enough: all that looking for faults asks of a picture.
 //!
 //! A ray is done with the first splat that stops it, whichever that is, and rays that are not asked
-//! about cost next to nothing: some times less work than finding what each ray meets first.
+//! about cost next to nothing: several times less work than finding what each ray meets first.
 
 use rayon::prelude::*;
 
@@ -14,6 +14,8 @@ use crate::model::asset::Asset;
 pub struct Stops<'a> {
     caps: Caps<'a>,
     eye: &'a Eye,
+    /// All pixels.
+    all: Rect,
     /// Splats with the pixels they may show in, the nearest first: most rays end there.
     order: Vec<(usize, Rect)>,
 }
@@ -28,15 +30,7 @@ impl<'a> Stops<'a> {
         let mut order: Vec<(usize, Rect)> = bounds.collect();
         let depth = |item: usize| eye.to_view(asset.splats[item].center).z;
         order.sort_by(|a, b| depth(a.0).total_cmp(&depth(b.0)));
-        Self { caps, eye, order }
-    }
-
-    /// Calls `visit` with the place and the column and row of each pixel that a splat may show in.
-    fn pixels(&self, rect: &Rect, mut visit: impl FnMut(usize, u32, u32)) {
-        for y in rect.y[0]..rect.y[1] {
-            let row = y as usize * self.eye.size[0] as usize;
-            (rect.x[0]..rect.x[1]).for_each(|x| visit(row + x as usize, x, y));
-        }
+        Self { caps, eye, all: Rect::whole(eye.size), order }
     }
 
     /// The pixels that any of the splats may show in, rows from the top.
@@ -44,7 +38,7 @@ impl<'a> Stops<'a> {
     pub fn touched(&self) -> Vec<bool> {
         let mut touched = vec![false; self.eye.size[0] as usize * self.eye.size[1] as usize];
         for (_, rect) in &self.order {
-            self.pixels(rect, |place, _, _| touched[place] = true);
+            rect.samples_in(&self.all, |place, _| touched[place] = true);
         }
         touched
     }
@@ -56,11 +50,11 @@ impl<'a> Stops<'a> {
         let mut open = limits.to_vec();
         let mut stopped = vec![None; limits.len()];
         for (item, rect) in &self.order {
-            self.pixels(rect, |place, x, y| {
+            rect.samples_in(&self.all, |place, sample| {
                 if open[place] == f64::NEG_INFINITY {
                     return;
                 }
-                let ray = self.eye.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let ray = self.eye.ray_through(sample);
                 let hit = self.caps.hit(*item, &ray).filter(|hit| hit.depth <= open[place]);
                 if let Some(hit) = hit {
                     stopped[place] = Some(hit.depth);

@@ -128,7 +128,7 @@ pub fn draw<S: Scene, T: Copy + Send + Sync>(
 pub fn depths<S: Scene>(scene: &S, eye: &Eye) -> Vec<f64> {
     let [width, height] = eye.size;
     let mut depths = vec![f64::INFINITY; width as usize * height as usize];
-    let all = Tile { area: Rect { x: [0, width], y: [0, height] }, eye, mix: Mix::Nearest };
+    let all = Tile { area: Rect::whole(eye.size), eye, mix: Mix::Nearest };
     for item in 0..scene.len() {
         let Some(bound) = scene.bound(item) else { continue };
         all.samples(&Rect::of(&bound, eye.size), |place, ray| {
@@ -143,8 +143,8 @@ pub fn depths<S: Scene>(scene: &S, eye: &Eye) -> Vec<f64> {
 /// A half-open rectangle of samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rect {
-    pub(super) x: [u32; 2],
-    pub(super) y: [u32; 2],
+    x: [u32; 2],
+    y: [u32; 2],
 }
 
 impl Rect {
@@ -160,6 +160,24 @@ impl Rect {
             [from.min(side), to.min(side)]
         };
         Self { x: span(bound.min.x, bound.max.x, size[0]), y: span(bound.min.y, bound.max.y, size[1]) }
+    }
+
+    /// All samples of a picture.
+    pub(super) fn whole([width, height]: [u32; 2]) -> Self {
+        Self { x: [0, width], y: [0, height] }
+    }
+
+    /// Calls `visit` with each of these samples that lies in an area: its place in the area's rows, and its
+    /// column and row.
+    pub(super) fn samples_in(&self, area: &Self, mut visit: impl FnMut(usize, [u32; 2])) {
+        let cut = self.cut(area);
+        let across = (area.x[1] - area.x[0]) as usize;
+        for y in cut.y[0]..cut.y[1] {
+            let row = (y - area.y[0]) as usize * across;
+            for x in cut.x[0]..cut.x[1] {
+                visit(row + (x - area.x[0]) as usize, [x, y]);
+            }
+        }
     }
 
     /// What two rectangles share; perhaps empty.
@@ -195,15 +213,7 @@ impl Tile<'_> {
 
     /// Calls `visit` with each sample of an item's rectangle in the tile.
     fn samples(&self, rect: &Rect, mut visit: impl FnMut(usize, &Ray)) {
-        let cut = rect.cut(&self.area);
-        let across = (self.area.x[1] - self.area.x[0]) as usize;
-        for y in cut.y[0]..cut.y[1] {
-            let row = (y - self.area.y[0]) as usize * across;
-            for x in cut.x[0]..cut.x[1] {
-                let ray = self.eye.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                visit(row + (x - self.area.x[0]) as usize, &ray);
-            }
-        }
+        rect.samples_in(&self.area, |place, sample| visit(place, &self.eye.ray_through(sample)));
     }
 
     /// The nearest hit of each pixel; of equally near ones, the first.
