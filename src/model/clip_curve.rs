@@ -94,6 +94,10 @@ impl Conic {
     /// `(1-rho)² l2² < 4 rho² l1 l3`. The *inner* region is the chord's far side from `P2`
     /// together with the bulge; turning left at `P2` cuts the outer region, turning right
     /// the inner one (Ivo 2020, Fig. 25). Where `[P1,P2,P3]` vanishes the chord decides.
+    ///
+    /// No bulge reaches beyond its shoulder, where `l2` is the share `rho` of `[P1,P2,P3]`. That
+    /// follows from the rest, but not as it is rounded: where `P1` and `P3` nearly coincide, `l1`
+    /// and `l3` are lost in rounding all along the legs, and `l2` is not.
     #[must_use]
     pub fn cuts(&self, q: DVec2) -> bool {
         let chord = turn(self.p1, self.p3, q);
@@ -106,7 +110,11 @@ impl Conic {
         let l2 = -sign * chord;
         let l3 = sign * turn(self.p1, self.p2, q);
         let (chordal, curved) = ((1.0 - self.rho) * l2, self.rho);
-        let bulge = l1 > 0.0 && l2 > 0.0 && l3 > 0.0 && chordal * chordal < 4.0 * curved * curved * l1 * l3;
+        let bulge = l2 > 0.0
+            && l2 < self.rho * area.abs()
+            && l1 > 0.0
+            && l3 > 0.0
+            && chordal * chordal < 4.0 * curved * curved * l1 * l3;
         let inner = l2 <= 0.0 || bulge;
         if area > 0.0 { !inner } else { inner }
     }
@@ -218,6 +226,21 @@ mod tests {
             assert!(walk.len() < 1000, "rho {rho}: {} points", walk.len());
             let strays = conic.points(7).any(|p| !walk.iter().any(|q| q.distance(p) <= 0.01));
             assert!(!strays, "rho {rho}");
+        }
+    }
+
+    #[test]
+    fn nothing_beyond_the_shoulder_lies_in_the_bulge() {
+        // Ends so near to each other that rounding hides on which side of either leg a place lies.
+        let p1 = DVec2::new(1e-3, 1.0);
+        let p3 = p1 + DVec2::X * 1e-17;
+        for p2 in [DVec2::new(-0.79, -0.8), DVec2::new(0.6, -0.3)] {
+            let conic = Conic { p1, p2, p3, rho: 0.5 };
+            let turns_left = turn(p1, p2, p3) > 0.0;
+            for n in 0..1000 {
+                let q = p1.lerp(p2, 0.51 + 0.49 * f64::from(n) / 1000.0);
+                assert_eq!(conic.cuts(q), turns_left, "{q} of {conic:?}");
+            }
         }
     }
 

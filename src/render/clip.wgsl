@@ -30,7 +30,7 @@ fn cuts(conic: Conic, q: vec2<f32>) -> bool {
     let l2 = -side * chord;
     let l3 = side * area_of(conic.p1, conic.p2, q);
     let chordal = (1.0 - conic.rho) * l2;
-    let bulge = l1 > 0.0 && l2 > 0.0 && l3 > 0.0
+    let bulge = l2 > 0.0 && l2 < conic.rho * abs(area) && l1 > 0.0 && l3 > 0.0
         && chordal * chordal < 4.0 * conic.rho * conic.rho * l1 * l3;
     let inner = l2 <= 0.0 || bulge;
     return select(inner, !inner, area > 0.0);

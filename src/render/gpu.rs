@@ -45,6 +45,17 @@ pub struct Loaded<'a> {
     scene: scene::Scene,
 }
 
+/// The WGSL of the clip test, as it is compiled into every pass over clipped splats, for tests of
+/// it alone.
+///
+/// It has the struct `Conic` (`p1`, `p2`, `p3`, `rho` and padding: 32 bytes), the read-only storage
+/// array `conics` of them at group 0, binding 1, over the unit disc, and the function
+/// `clipped_away(first, count, place)`: whether any of `count` conics cuts the place away.
+#[must_use]
+pub fn clip_source() -> String {
+    source::clip()
+}
+
 impl Gpu {
     /// Opens the best adapter: discrete, integrated, virtual, then software.
     ///

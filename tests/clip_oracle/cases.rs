@@ -3,6 +3,9 @@
 use glam::DVec2;
 use qsplat::model::clip_curve::{ClipCurve, Conic};
 
+/// How far from the chord's middle a file lets `P2` lie, in larger radii (format-spec.md).
+const CONTROL_RANGE: f64 = 1024.0;
+
 /// SplitMix64 (Steele et al. 2014).
 pub struct Random(u64);
 
@@ -30,22 +33,23 @@ impl Random {
     }
 }
 
-/// A shape: 0, 1, beside them, or anything between.
-fn rho(kind: u64, random: &mut Random) -> f64 {
+/// A shape: 0, 1, beside them by the rounding of the floats under test, or anything between.
+fn rho(kind: u64, epsilon: f64, random: &mut Random) -> f64 {
     match kind {
         0 => 0.0,
         1 => 1.0,
         2 => 1e-12 * random.unit(),
-        3 => 1.0 - f64::EPSILON,
+        3 => 1.0 - epsilon,
         4 => 0.5,
-        5 => f64::EPSILON,
+        5 => epsilon,
         _ => random.unit(),
     }
 }
 
-/// A conic over an ellipse: round, needle, narrow arcs, arcs beyond 180 degrees, control points
-/// far away and nearly on the chord.
-pub fn conic(index: u64, random: &mut Random) -> Conic {
+/// A clip curve and the radii of its ellipse: round, needle, narrow arcs, arcs beyond 180 degrees,
+/// control points far away and nearly on the chord. `epsilon` is the rounding of the floats that
+/// the curve is to be hard for.
+pub fn clip(index: u64, epsilon: f64, random: &mut Random) -> (ClipCurve, DVec2) {
     let size = libm::exp2(20.0 * random.signed());
     let ratio = if index.is_multiple_of(3) { 1e-3 } else { 0.2 + random.unit() };
     let radii = DVec2::new(size, size * ratio);
@@ -60,15 +64,16 @@ pub fn conic(index: u64, random: &mut Random) -> Conic {
     let mut clip = ClipCurve { alpha1, alpha3: (alpha1 + sweep) % turn, p2: DVec2::ZERO, rho: 0.0 };
     let (p1, p3) = clip.ends(radii);
     let along = p1.lerp(p3, 1.5 * random.unit() - 0.25);
-    clip.p2 = match index / 12 % 5 {
-        0 => along + 1e-15 * radii * DVec2::new(random.signed(), random.signed()),
+    clip.p2 = match index / 12 % 6 {
+        0 => along + 4.0 * epsilon * radii * DVec2::new(random.signed(), random.signed()),
         1 => along + 1e-8 * radii * DVec2::new(random.signed(), random.signed()),
         2 => 16.0 * radii * DVec2::new(random.signed(), random.signed()),
         3 => p1,
+        4 => CONTROL_RANGE * radii.x * DVec2::new(random.signed(), random.signed()),
         _ => radii * DVec2::new(random.signed(), random.signed()),
     };
-    clip.rho = rho(index / 60 % 8, random);
-    clip.conic(radii)
+    clip.rho = rho(index / 72 % 8, epsilon, random);
+    (clip, radii)
 }
 
 /// A point: on the curve but for rounding, beside it by steps of every size, on the chord, at a

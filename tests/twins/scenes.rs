@@ -122,13 +122,45 @@ pub fn clipped(rho: f64, several: bool) -> Asset {
     asset(vec![Splat { clips, ..bowl }], 0.002)
 }
 
-/// Needles, a thousand times as long as wide, flat and curved, every way.
+/// One bowl of which the arc cut away is three quarters of its border.
+pub fn wide_arc(rho: f64) -> Asset {
+    let mut asset = clipped(rho, false);
+    for clip in asset.splats.iter_mut().flat_map(|splat| &mut splat.clips) {
+        std::mem::swap(&mut clip.alpha1, &mut clip.alpha3);
+    }
+    asset
+}
+
+/// Radii of a needle, a thousand times as long as wide.
+const NEEDLE: DVec2 = DVec2::new(0.5, 0.0005);
+
+/// Needles, flat and curved, every way.
 pub fn needles() -> Asset {
     let splats = directions(500).enumerate().map(|(n, d)| {
         let curvature = if n % 2 == 0 { DVec2::ZERO } else { DVec2::new(0.3, 0.0) };
-        splat(0.5 * d, axes(d), DVec2::new(0.5, 0.0005), curvature)
+        splat(0.5 * d, axes(d), NEEDLE, curvature)
     });
     asset(splats.collect(), 0.0005)
+}
+
+/// The same needles, each without a good third of its length, by curves of every shape.
+pub fn clipped_needles() -> Asset {
+    let across = |u: f64, side: f64| angle(DVec2::new(u, side * NEEDLE.y));
+    let mut asset = needles();
+    for (n, splat) in asset.splats.iter_mut().enumerate() {
+        let rho = [0.0, 0.3, 0.5, 0.9, 1.0][n % 5];
+        let p2 = DVec2::new(0.1, 0.4 * NEEDLE.y);
+        splat.clips = vec![ClipCurve { alpha1: across(0.2, -1.0), alpha3: across(0.15, 1.0), p2, rho }];
+    }
+    asset
+}
+
+/// One needle in the plane `z = 0`, along `X`, with a clip curve through its middle.
+pub fn clipped_needle(rho: f64) -> Asset {
+    let (p1, p3) = (DVec2::new(2.0, -2.0) * NEEDLE.y, DVec2::new(1.0, 2.0) * NEEDLE.y);
+    let clip = ClipCurve { alpha1: angle(p1), alpha3: angle(p3), p2: DVec2::new(-1.5, 0.2) * NEEDLE.y, rho };
+    let needle = splat(DVec3::ZERO, DMat3::IDENTITY, NEEDLE, DVec2::new(0.3, 0.0));
+    asset(vec![Splat { clips: vec![clip], ..needle }], 0.0005)
 }
 
 /// Central angle in `[0, 2π)`.

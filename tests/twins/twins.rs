@@ -21,6 +21,9 @@ const OUTLIERS: f64 = 1e-3;
 /// Greatest mean FLIP.
 const MEAN_FLIP: f32 = 1e-3;
 
+/// A shape so far from 0 or 1 that 32 bits can just tell.
+const BESIDE: f64 = f32::EPSILON as f64;
+
 /// The adapter. Without one the comparison is left out, which is said on standard error even
 /// when the test passes; where CI or QSPLAT_REQUIRE_GPU say so it is an error.
 #[allow(clippy::explicit_write)] // `eprintln` is held back by the test harness
@@ -69,9 +72,14 @@ fn all_scenes() -> Vec<(&'static str, Asset)> {
         ("chord", scenes::clipped(0.0, false)),
         ("parabola", scenes::clipped(0.5, false)),
         ("control polygon", scenes::clipped(1.0, false)),
+        ("beside the chord", scenes::clipped(BESIDE, false)),
+        ("beside the control polygon", scenes::clipped(1.0 - BESIDE, false)),
+        ("arc over 180 degrees", scenes::wide_arc(0.5)),
+        ("corner over 180 degrees", scenes::wide_arc(1.0)),
         ("partners", scenes::partnered()),
         ("three clips", scenes::clipped(0.4, true)),
         ("needles", scenes::needles()),
+        ("clipped needles", scenes::clipped_needles()),
         ("all kinds", scenes::all_kinds()),
     ]
 }
@@ -119,6 +127,27 @@ fn hard_cameras_agree() {
                 let settings = Settings { size: [160, 120], show, ..Settings::default() };
                 compare(&format!("{view} {name}"), &gpu, &asset, &camera, &settings);
             }
+        }
+    }
+}
+
+#[test]
+fn a_clipped_needle_agrees_close_up() {
+    let Some(gpu) = gpu() else { return };
+    let camera = Camera {
+        eye: [0.0, 0.0, 1.0],
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        projection: Projection::Orthographic { height: 0.003 },
+        near: None,
+    };
+    for rho in [0.0, BESIDE, 0.5, 1.0 - BESIDE, 1.0] {
+        let asset = scenes::clipped_needle(rho);
+        for show in [Show::Shaded, Show::Normals, Show::Depth] {
+            let settings = Settings { size: [160, 120], show, ..Settings::default() };
+            let shown = compare(&format!("needle of shape {rho}"), &gpu, &asset, &camera, &settings);
+            // Half of a strip that is a third as high as the picture, and less for the curve.
+            assert!((1500..4500).contains(&shown), "{shown} pixels");
         }
     }
 }

@@ -63,6 +63,12 @@ pub fn shading(colored: bool) -> String {
     assemble(&[include_str!("../eye.wgsl"), include_str!("../shade.wgsl")], names)
 }
 
+/// The module part of the clip test, as the passes over clipped splats are compiled with.
+#[must_use]
+pub fn clip() -> String {
+    assemble(&[include_str!("../clip.wgsl")], &[])
+}
+
 /// The number that stands for a show in the shading pass.
 #[must_use]
 pub fn show_number(show: Show) -> u32 {
