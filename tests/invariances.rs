@@ -2,22 +2,29 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::{DQuat, DVec3, Vec3};
-use qsplat::bake::{MaxError, Options, Silent};
+use qsplat::bake::{DEFAULT_EFFORT, Edges, MaxError, Options, Silent};
 use qsplat::deliver::{Delivery, deliver};
 use qsplat::ingest::{self, Input, Limits};
 use qsplat::model::cloud::Cloud;
 use qsplat::model::frame::Frame;
 use qsplat::model::mesh::Mesh;
+use qsplat::model::polyline::Polylines;
 
 /// Share of the diagonal.
 const BUDGET: f64 = 1e-3;
 
+/// The default, at which splats exchange shares, and the one above, where more is tried.
+const EFFORTS: [u8; 2] = [DEFAULT_EFFORT, DEFAULT_EFFORT + 1];
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
 fn fixture(name: &str) -> Mesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name);
-    match ingest::read(&path, &Limits::default()).unwrap() {
+    match ingest::read(&path(name), &Limits::default()).unwrap() {
         Input::Mesh(mesh) => mesh,
         Input::Cloud(_) => panic!("{name} is a cloud"),
     }
@@ -28,8 +35,16 @@ fn bake(mesh: &Mesh) -> Delivery {
 }
 
 fn bake_within(mesh: &Mesh, max_error: MaxError) -> Delivery {
-    let options = Options { max_error, effort: 3, ..Options::default() };
+    bake_as(mesh, Options { max_error, effort: 3, ..Options::default() })
+}
+
+fn bake_as(mesh: &Mesh, options: Options) -> Delivery {
     deliver(&Input::Mesh(mesh.clone()), &options, &mut Silent).unwrap()
+}
+
+/// At the bound of these tests, which is the default too, with more effort than [`bake`].
+fn bake_harder(mesh: &Mesh, effort: u8, edges: Edges) -> Delivery {
+    bake_as(mesh, Options { max_error: MaxError::Relative(BUDGET), effort, edges, ..Options::default() })
 }
 
 /// A mesh from points in input units, as reading a file with 64-bit coordinates gives it.
@@ -116,6 +131,46 @@ fn order_corners_seams_and_threads_leave_the_bytes_as_they_are() {
             assert_eq!(found.asset, expected.asset, "{name}: {what} changes the asset");
             assert!(found.bytes == expected.bytes, "{name}: {what} changes the bytes");
         }
+    }
+}
+
+#[test]
+fn order_and_threads_leave_the_bytes_as_they_are_at_higher_efforts() {
+    let [default, above] = EFFORTS;
+    for (name, effort) in
+        [("capped-cylinder.ply", default), ("plate.ply", default), ("capped-cylinder.ply", above)]
+    {
+        let plain = fixture(name);
+        let expected = on_threads(1, || bake_harder(&plain, effort, Edges::Auto));
+        let changed = reordered(&unwelded(&plain), 23);
+        let found = on_threads(3, || bake_harder(&changed, effort, Edges::Auto));
+        assert_eq!(found.asset, expected.asset, "{name} at effort {effort}: order changes the asset");
+        assert!(found.bytes == expected.bytes, "{name} at effort {effort}: order changes the bytes");
+    }
+}
+
+/// The lines in another order, some of them walked the other way.
+fn shuffled_lines(lines: &Polylines, seed: u64) -> Polylines {
+    let turned = |(n, &old): (usize, &usize)| {
+        let mut line = lines.lines[old].clone();
+        if n % 2 == 0 {
+            line.reverse();
+        }
+        line
+    };
+    let order = shuffled(lines.lines.len(), seed);
+    Polylines { lines: order.iter().enumerate().map(turned).collect() }
+}
+
+#[test]
+fn order_and_direction_of_given_lines_leave_the_bytes_as_they_are() {
+    for name in ["part", "plate"] {
+        let mesh = fixture(&format!("{name}.ply"));
+        let lines = ingest::read_edges(&path(&format!("{name}.edges.obj")), &Limits::default()).unwrap();
+        let expected = bake_harder(&mesh, DEFAULT_EFFORT, Edges::Given(lines.clone()));
+        let found = bake_harder(&mesh, DEFAULT_EFFORT, Edges::Given(shuffled_lines(&lines, 31)));
+        assert_eq!(found.asset, expected.asset, "{name}: the lines' order changes the asset");
+        assert!(found.bytes == expected.bytes, "{name}: the lines' order changes the bytes");
     }
 }
 

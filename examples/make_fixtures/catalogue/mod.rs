@@ -4,15 +4,15 @@
 //! them into one welded `surface`; `ply`, `obj` and `glb` write it. Nothing here depends on the
 //! machine: every transcendental function comes from `libm`.
 
-mod curve;
+pub mod curve;
 mod geodesic;
 mod glb;
 mod head;
 mod obj;
-mod planar;
+pub mod planar;
 mod ply;
-mod ruled;
-mod surface;
+pub mod ruled;
+pub mod surface;
 
 mod blob;
 mod cylinder;
