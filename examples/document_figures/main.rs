@@ -1,14 +1,16 @@
 //! Our numbers beside those of the source documents: `document_figures [FOLDER [SECTION]]`, by
 //! default `out/figures` and all sections.
 //!
-//! `scripts/figures` calls it. `T` is Ivo's thesis (UFC 2020), whose Figures 33 and 37 and
-//! Tables 1 and 2 are made again here; `P` is the paper on clip partners by Ivo, Vidal and
+//! `scripts/figures` calls it. `T` is Ivo's thesis (UFC 2020), whose Figures 33, 37 and 38
+//! and Tables 1 and 2 are made again here; `P` is the paper on clip partners by Ivo, Vidal and
 //! Cavalcante-Neto, with its Figures 7 to 9. Each becomes a section of `figures.md`, a CSV of the same
 //! rows and, where it is a curve, an SVG. Models come from the folder that `QSPLAT_MODELS`
 //! names; where one is missing, a generated surface takes its place, and the section says so.
 
+mod equal_bound;
 mod figure_33;
 mod figure_37;
+mod figure_38;
 mod hull;
 mod layout;
 mod models;
@@ -17,6 +19,7 @@ mod partners;
 mod plot;
 mod scatter;
 mod search;
+mod sheets;
 mod table_1;
 mod table_2;
 mod uniform;
@@ -32,9 +35,10 @@ use page::Page;
 type Section = fn(&mut Page) -> Result<()>;
 
 /// The sections by name, in their order.
-const SECTIONS: [(&str, Section); 5] = [
+const SECTIONS: [(&str, Section); 6] = [
     ("figure-33", figure_33::make),
     ("figure-37", figure_37::make),
+    ("figure-38", figure_38::make),
     ("table-1", table_1::make),
     ("table-2", table_2::make),
     ("partners", partners::make),

@@ -35,6 +35,18 @@ pub fn parts() -> Result<Vec<Model>> {
     Ok(parts)
 }
 
+/// Parts whose edges bend: the fixtures', and two of the user's folder.
+///
+/// # Errors
+/// As [`read`].
+pub fn edged() -> Result<Vec<Model>> {
+    let mut models = vec![fixture("part.ply")?];
+    for file in ["fandisk.obj", "abc-00000049.obj"] {
+        models.extend(external(file)?);
+    }
+    Ok(models)
+}
+
 /// A model of the user's folder, or `stand_in` of the fixtures where there is none.
 ///
 /// # Errors

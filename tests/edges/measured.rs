@@ -34,7 +34,7 @@ impl Measured {
         let edge = self.edge.map(|edge| ("edge", edge, 1.0));
         let all = [("fit", self.fit, 1.0), ("forward", self.forward, 1.0), ("backward", self.backward, RIM)];
         // A distance that is no number keeps no bound.
-        let broken = all.into_iter().chain(edge).filter(|(_, value, limit)| !(value <= limit));
+        let broken = all.into_iter().chain(edge).filter(|(_, value, limit)| value > limit || value.is_nan());
         broken.map(|(what, value, limit)| format!("{what} is {value:.3} of {limit} bounds")).collect()
     }
 }
