@@ -50,15 +50,17 @@ pub fn align<'a>(against: Model<'a>, asset: &Asset) -> Result<Aligned<'a>> {
 /// something else.
 pub fn check(frame: &Frame, diagonal: f64, asset: &Asset) -> Result<()> {
     let diagonals = [asset.diagonal * asset.frame.scale(), diagonal * frame.scale()];
-    let apart = frame.origin.distance(asset.frame.origin);
+    // Rounded a little otherwise, a box may get an origin that is a step farther along each axis.
+    let steps = DVec3::splat(frame.step().max(asset.frame.step()));
+    let apart = frame.origin.distance(asset.frame.origin) - steps.length();
     // Written so that a NaN is refused.
     let same = [apart, (diagonals[0] - diagonals[1]).abs()].iter().all(|&off| off <= SAME_BOX * diagonals[0]);
     if same {
         return Ok(());
     }
     Err(Error::Usage(format!(
-        "the file and the input do not belong together: the file's bounding box has its centre at {} and \
-         a diagonal of {}, the input's {} and {}; give the input that the file was baked from",
+        "the file and the input do not belong together: the file's bounding box lies around {} with a \
+         diagonal of {}, the input's around {} with {}; give the input that the file was baked from",
         asset.frame.origin, diagonals[0], frame.origin, diagonals[1]
     )))
 }
@@ -139,10 +141,16 @@ mod tests {
     }
 
     #[test]
+    fn a_step_of_the_origin_along_each_axis_makes_no_other_model() {
+        let other = cloud(DVec3::ONE + asset().frame.step(), 3);
+        assert!(align(Model::Cloud(&other), &asset()).is_ok());
+    }
+
+    #[test]
     fn another_model_is_refused_with_both_boxes() {
         let mut bigger = cloud(DVec3::ONE, 3);
         bigger.positions[0].x *= 1.01;
-        for other in [cloud(DVec3::ONE + DVec3::Y * 1e-3, 3), bigger, Cloud::default()] {
+        for other in [cloud(DVec3::ONE + DVec3::Y * 0.015, 3), bigger, Cloud::default()] {
             let message = align(Model::Cloud(&other), &asset()).err().unwrap().to_string();
             assert!(message.contains("17.88") && message.contains("baked from"), "{message}");
         }

@@ -216,7 +216,7 @@ pub struct Absent {
 /// Where the model lies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
-    /// Centre of the bounding box, input units.
+    /// A place within half a thousandth of a model unit of the centre of the bounding box, input units.
     pub origin: [f64; 3],
     /// One model unit is this power of two of input units.
     pub exponent: i32,

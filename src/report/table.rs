@@ -60,7 +60,7 @@ impl Report {
         let [x, y, z] = model.origin;
         text.row(
             "box",
-            format!("centre ({x:.6}, {y:.6}, {z:.6}), diagonal {:.6} input units", model.diagonal),
+            format!("around ({x:.6}, {y:.6}, {z:.6}), diagonal {:.6} input units", model.diagonal),
         );
     }
 }
