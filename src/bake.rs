@@ -167,7 +167,8 @@ pub fn bake(
     });
     let asset = |splats: Vec<Splat>| Asset {
         frame: cloud.frame,
-        diagonal,
+        // Rounded to what a file keeps in four bytes, as the bound is.
+        diagonal: f64::from(diagonal as f32),
         max_error,
         fit: Accuracy::default(),
         has_colors: !surface.colors.is_empty(),
@@ -225,8 +226,14 @@ fn diagonal(positions: &[Vec3]) -> f64 {
     (high.as_dvec3() - low.as_dvec3()).length()
 }
 
-/// The error bound of a bake in model units: that of the options, or less where [`Holes::Close`] asks for
-/// it.
+/// The greatest bound of 32 bits, which a file keeps in four bytes, that is no looser than this one.
+fn no_looser(bound: f64) -> f64 {
+    let nearest = bound as f32;
+    f64::from(if f64::from(nearest) > bound { nearest.next_down() } else { nearest })
+}
+
+/// The error bound of a bake in model units: that of the options to 32 bits, or less where
+/// [`Holes::Close`] asks for it.
 ///
 /// # Errors
 /// [`Error::Usage`] for options out of range, and for an input without extent.
@@ -263,10 +270,10 @@ pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
         )));
     }
     // Where a cloud's outline lies is a guess.
-    match (input, options.holes) {
-        (Input::Mesh(_), Holes::Close) => Ok(error.min(COARSEST_CLOSED * diagonal)),
-        (Input::Cloud(_), _) | (_, Holes::Leave) => Ok(error),
-    }
+    Ok(no_looser(match (input, options.holes) {
+        (Input::Mesh(_), Holes::Close) => error.min(COARSEST_CLOSED * diagonal),
+        (Input::Cloud(_), _) | (_, Holes::Leave) => error,
+    }))
 }
 
 /// Bounds below this share of the diagonal drown in the rounding of 32-bit positions.
