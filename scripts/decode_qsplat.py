@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A second decoder of .qsplat version 2, written from format-spec.md alone.
+"""A second decoder of .qsplat version 3, written from format-spec.md alone.
 
 It is slow and plain on purpose: where it and the Rust decoder disagree, one of them or the
 specification is wrong. Prints all splats as JSON with every digit.
@@ -29,7 +29,54 @@ def require(condition, why):
         raise Bad(why)
 
 
-# Section 3: header, table, chunks ------------------------------------------------------------
+# Section 2: checksum and varints ---------------------------------------------------------------
+
+
+class Fields:
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def take(self, layout):
+        size = struct.calcsize(layout)
+        require(self.at + size <= len(self.data), "a field ends too early")
+        values = struct.unpack_from(layout, self.data, self.at)
+        self.at += size
+        return list(values)
+
+    def varint(self):
+        value = 0
+        for n in range(5):
+            byte = self.take("<B")[0]
+            value |= (byte & 127) << 7 * n
+            if byte < 128:
+                require(byte > 0 or n == 0, "a varint with idle bytes")
+                return value
+        raise Bad("a varint of more than five bytes")
+
+    def signed(self):
+        value = self.varint()
+        return value // 2 if value % 2 == 0 else -(value + 1) // 2
+
+    def word(self):
+        value = self.varint()
+        require(value < 1 << 32, "a number of more than 32 bits")
+        return value
+
+    def left(self):
+        return len(self.data) - self.at
+
+
+def unsealed(data):
+    require(data[:4] == b"\x89QSP", "magic")
+    require(data[4:5] == b"\x03", "version")
+    require(len(data) >= 9 and data[-4:] == struct.pack("<I", zlib.crc32(data[:-4])), "checksum")
+    return Fields(data[5:-4])
+
+
+# Section 3: header and chunks ------------------------------------------------------------------
+
+STEPS = {"cell": 40, "height": 2, "slide": 5, "tilt": 80, "bend": 180, "spin": 80, "clip": 68}
+CHUNKS = ["SPLT", "COLR", "PART"]
 
 
 def unzstd(frame):
@@ -48,52 +95,58 @@ def unzstd(frame):
     return subprocess.run(["zstd", "-d", "-c", "-q"], input=frame, stdout=subprocess.PIPE, check=True).stdout
 
 
-def read_header(data):
-    require(len(data) >= 96, "shorter than a header")
-    fields = struct.unpack_from("<8sHBB5I7BBi5d3f", data)
-    magic, version, chunks, reserved = fields[:4]
-    require(magic == b"\x89QSP\r\n\x1a\n", "magic")
-    require(version == 2, "version")
-    names = ["cell", "height", "slide", "tilt", "bend", "spin", "clip"]
-    head = dict(zip(["required", "optional", "splats", "straight", "curved"], fields[4:9]))
-    require(reserved == 0, "the reserved byte")
-    head["steps"] = dict(zip(names, fields[9:16]))
-    head["guesses"], head["exponent"] = fields[16:18]
-    floats = fields[18:]
-    head["origin"], head["diagonal"], head["E"] = floats[:3], floats[3], floats[4]
-    head["fit"] = [share * head["E"] for share in floats[5:]]
-    require(all(math.isfinite(x) for x in floats), "a float that is not finite")
-    require(head["required"] & ~3 == 0, "an unknown required feature")
+def read_header(fields):
+    head = {"required": fields.word(), "optional": fields.word()}
+    (form,) = fields.take("<B")
+    require(form < 32 and head["required"] < 4, "an unknown form or required feature")
+    head["guesses"] = form & 3
+    for name in ["splats", "straight", "curved"]:
+        head[name] = fields.word()
+    head["steps"] = dict(zip(STEPS, fields.take("<7B"))) if form & 4 else STEPS
+    head["exponent"] = fields.signed()
+    require(abs(head["exponent"]) <= 1000, "exponent")
+    if form & 8:
+        head["origin"] = fields.take("<3d")
+    else:
+        head["origin"] = [fields.signed() * 2.0 ** (head["exponent"] - 10) for _ in range(3)]
+    head["diagonal"], head["E"] = fields.take("<2d" if form & 16 else "<2f")
+    head["fit"] = [fields.word() / 8192 * head["E"] for _ in range(3)]
+    require(all(math.isfinite(x) for x in head["origin"]), "origin")
     require(2.0**-60 <= head["diagonal"] <= 2.0**60, "diagonal")
     require(2.0**-24 * head["diagonal"] <= head["E"] <= 16 * head["diagonal"], "max error")
-    require(all(x >= 0 for x in head["fit"]) and abs(head["exponent"]) <= 1000, "fit or exponent")
     steps = head["steps"]
     require(all(steps[n] > 0 for n in ["cell", "tilt", "bend", "spin", "clip"]), "a step of zero")
-    require(steps["height"] <= 12 and steps["slide"] <= 12 and head["guesses"] <= 3, "steps")
-    return head, chunks
+    require(steps["height"] <= 12 and steps["slide"] <= 12, "steps")
+    return head
 
 
-def read_chunks(data, count):
-    end = 96 + 17 * count
-    require(len(data) >= end + 4, "shorter than its table")
-    require(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "header checksum")
-    chunks, at = {}, end + 4
-    for n in range(count):
-        name, flags, raw, coded, check = struct.unpack_from("<4sBIII", data, 96 + 17 * n)
-        body = data[at : at + coded]
-        at += coded
-        require(len(body) == coded and zlib.crc32(body) == check, "a chunk's checksum or length")
-        name = name.decode("latin-1")
-        require(name not in chunks and flags & ~3 == 0, "chunk twice, or unknown flags")
-        if name not in ["SPLT", "COLR", "PART"]:
-            require(flags & 1 == 0, "an unknown required chunk")
+def read_entry(fields):
+    (tag,) = fields.take("<B")
+    number = tag >> 2
+    require(number <= len(CHUNKS), "a number that no chunk has")
+    name = CHUNKS[number - 1] if number else fields.take("<4s")[0].decode("latin-1")
+    require(number or name not in CHUNKS, "an id spelt out in place of its number")
+    raw = fields.word() if tag & 2 else None
+    return name, tag, raw, fields.word()
+
+
+def read_chunks(fields):
+    chunks, names = {}, []
+    while fields.left() > 0:
+        name, tag, raw, coded = read_entry(fields)
+        require(name not in names and len(names) < 255, "a chunk twice, or too many")
+        names.append(name)
+        require(coded <= fields.left(), "a chunk's length")
+        (body,) = fields.take(f"<{coded}s")
+        if name not in CHUNKS:
+            require(tag & 1 == 0, "an unknown required chunk")
             continue
-        if flags & 2:
+        if tag & 2:
             require(name != "SPLT", "splats coded by zstd")
             body = unzstd(b"\x28\xb5\x2f\xfd" + body)
-        require(len(body) == raw and raw > 0, "a chunk's decoded length")
+            require(len(body) == raw, "a chunk's decoded length")
+        require(len(body) > 0, "an empty chunk")
         chunks[name] = body
-    require(at == len(data), "bytes after the last chunk")
     return chunks
 
 
@@ -394,53 +447,37 @@ def paint(splats, planes):
 # Section 8.2: clip partners --------------------------------------------------------------------
 
 
-class Numbers:
-    def __init__(self, data):
-        self.data, self.at = data, 0
-
-    def next(self):
-        value = 0
-        for n in range(5):
-            require(self.at < len(self.data), "clip partners end too early")
-            byte = self.data[self.at]
-            self.at += 1
-            value |= (byte & 127) << 7 * n
-            if byte < 128:
-                require(byte > 0 or n == 0, "a number with idle bytes")
-                return value
-        raise Bad("a number of more than five bytes")
-
-
 def link(splats, data):
-    numbers = Numbers(data)
-    require(numbers.next() == 1, "the version of the clip partners")
+    numbers = Fields(data)
+    require(numbers.varint() == 1, "the version of the clip partners")
     partners = [{} for _ in splats]
     for i in range(len(splats)):
         j = i
-        for _ in range(numbers.next()):
-            number = numbers.next()
+        for _ in range(numbers.varint()):
+            number = numbers.varint()
             j += (number >> 2) + 1
             require(j < len(splats), "a partner beyond the last splat")
             partners[i][j], partners[j][i] = number & 1, number >> 1 & 1
     for splat, own in zip(splats, partners):
         if not own:
             continue
-        way, groups = numbers.next(), []
+        way, groups = numbers.varint(), []
         require(way in (0, 2) or way == 1 and len(own) > 1, "how partners cut")
         for n, j in enumerate(sorted(own)):
-            group = [n + 1, 1][way] if way < 2 else numbers.next()
+            group = [n + 1, 1][way] if way < 2 else numbers.varint()
             require(group <= len(groups) + 1, "a group out of turn")
             if group > len(groups):
                 groups.append([])
             if group > 0:
                 groups[group - 1].append({"splat": j, "sees": own[j] == 1})
         splat["partners"] = groups
-    require(numbers.at == len(data), "clip partners are left over")
+    require(numbers.left() == 0, "clip partners are left over")
 
 
 def decode(data):
-    head, count = read_header(data)
-    chunks = read_chunks(data, count)
+    fields = unsealed(data)
+    head = read_header(fields)
+    chunks = read_chunks(fields)
     require(head["splats"] <= 4 * len(chunks.get("SPLT", b"")), "too few bytes for the splats")
     require(head["splats"] > 0 or "SPLT" not in chunks, "a chunk without splats")
     tape, grids = Tape(chunks.get("SPLT", b"")), Grids(head)
@@ -465,7 +502,7 @@ def decode(data):
     if "PART" in chunks:
         link(splats, chunks["PART"])
     return {
-        "version": 2,
+        "version": 3,
         "frame": {"origin": head["origin"], "exponent": head["exponent"]},
         "diagonal": head["diagonal"],
         "max_error": head["E"],

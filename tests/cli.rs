@@ -453,8 +453,12 @@ fn measure_says_everything_and_passes_its_check() {
     let fits =
         [(measures.fit.rms, stored.rms), (measures.fit.p99, stored.p99), (measures.fit.max, stored.max)];
     for (measured, stored) in fits {
-        let off = (measured / stored - 1.0).abs();
-        assert!(off <= f64::from(f32::EPSILON), "measured anew, an error is what is stored, but for {off}");
+        // The file rounds up to parts of the budget; both are shares of the diagonal.
+        let over = 8192.0 * (stored - measured) / info.error.budget;
+        assert!(
+            (-1e-9..=1.0).contains(&over),
+            "{stored} is stored and {measured} measured: {over} parts off"
+        );
     }
     assert_eq!(measures.cost.bytes, info.file.bytes);
     let coded: u64 = measures.cost.chunks.iter().map(|chunk| chunk.coded_bytes).sum();

@@ -252,9 +252,17 @@ fn the_second_decoder_refuses_what_the_first_refuses() {
     }
     let bytes = std::fs::read(root().join("fixtures/vectors/mixed.qsplat")).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    for at in [0, 8, 13, 60, 110, 150, bytes.len() / 2, bytes.len() - 1] {
+    let (half, last) = (bytes.len() / 2, bytes.len() - 1);
+    // Version, features and form also with a checksum that fits.
+    for (at, fits) in
+        [(0, false), (4, true), (5, true), (7, true), (20, false), (150, false), (half, false), (last, false)]
+    {
         let mut broken = bytes.clone();
         broken[at] ^= 0x40;
+        if fits {
+            let (said, check) = broken.split_last_chunk_mut::<4>().unwrap();
+            *check = crc32fast::hash(said).to_le_bytes();
+        }
         let path = folder.path().join("broken.qsplat");
         std::fs::write(&path, &broken).unwrap();
         let output =
@@ -278,20 +286,18 @@ fn write_vectors() {
     }
     let bytes = encode(&worked_example()).unwrap();
     let fields = [
-        (8, "magic"),
-        (4, "version 2, chunks, reserved"),
-        (8, "required: quadrics, clips; optional: colours"),
-        (12, "splats, straight clips, curved clips"),
-        (8, "steps, guesses"),
-        (4, "exponent"),
-        (8, "origin x"),
-        (8, "origin y"),
-        (8, "origin z"),
-        (8, "diagonal"),
-        (8, "max error"),
-        (4, "fit rms"),
-        (4, "fit p99"),
-        (4, "fit max"),
+        (4, "magic"),
+        (1, "version"),
+        (2, "required: quadrics, clips; optional: colours"),
+        (1, "form: nothing is guessed, stated, free or long"),
+        (3, "splats, straight clips, curved clips"),
+        (1, "exponent"),
+        (2, "origin x"),
+        (2, "origin y"),
+        (4, "origin z"),
+        (4, "diagonal"),
+        (4, "max error"),
+        (6, "fit rms, p99, max"),
     ];
     let mut at = 0;
     for (count, comment) in fields {
@@ -300,17 +306,16 @@ fn write_vectors() {
     }
     let chunks = inspect(&bytes, &Limits::default()).unwrap().chunks;
     for chunk in &chunks {
-        println!("{}", dump_line(&bytes, at, 5, &format!("{}: id, flags", chunk.id)));
-        println!("{}", dump_line(&bytes, at + 5, 12, "  raw and coded bytes, CRC-32"));
-        at += 17;
-    }
-    println!("{}", dump_line(&bytes, at, 4, "CRC-32 of all above"));
-    at += 4;
-    for chunk in &chunks {
+        // A tag, and lengths below 128.
+        let (count, lengths) =
+            if chunk.coder == "zstd" { (3, "raw and coded length") } else { (2, "length") };
+        println!("{}", dump_line(&bytes, at, count, &format!("{}: tag, {lengths}", chunk.id)));
+        at += count;
         for start in (0..chunk.coded_bytes as usize).step_by(16) {
             let count = (chunk.coded_bytes as usize - start).min(16);
             println!("{}", dump_line(&bytes, at + start, count, &chunk.id));
         }
         at += chunk.coded_bytes as usize;
     }
+    println!("{}", dump_line(&bytes, at, 4, "CRC-32 of all before it"));
 }

@@ -1,18 +1,11 @@
 //! Which chunks there are, and how long each may be.
 
-use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, Entry, Header};
+use super::entry::{CHUNK_REQUIRED, CHUNK_ZSTD, COLOR_ID, Entry, PARTNERS_ID, SPLATS_ID};
+use super::fields::Fields;
+use super::layout::Header;
 use super::limits::Limits;
 use super::partners;
 use crate::error::{Error, Result};
-
-/// Id of the chunk of splats.
-pub const SPLATS_ID: [u8; 4] = *b"SPLT";
-
-/// Id of the chunk of colours.
-pub const COLOR_ID: [u8; 4] = *b"COLR";
-
-/// Id of the chunk of clip partners.
-pub const PARTNERS_ID: [u8; 4] = *b"PART";
 
 /// A splat, and a clip curve, takes at most this many bytes.
 ///
@@ -26,6 +19,9 @@ const MOST_EACH: u64 = 208;
 /// file: on the grids of [`super::encode`] each has at least two bare bits, of its place in a cell.
 pub const MOST_IN_BYTE: u64 = 4;
 
+/// A file holds at most this many chunks: each is compared with all before it.
+const MOST_CHUNKS: usize = 255;
+
 /// The largest decoded length that the counts in the header allow; `None` for an unknown id.
 #[must_use]
 pub fn most_bytes(id: [u8; 4], header: &Header) -> Option<u64> {
@@ -38,58 +34,53 @@ pub fn most_bytes(id: [u8; 4], header: &Header) -> Option<u64> {
     }
 }
 
-/// The chunks of a file in place: each known entry with its bytes.
+/// The chunks of a file in place: what stands before each, and its bytes.
 pub struct Chunks<'a>(Vec<(Entry, &'a [u8])>);
 
 impl<'a> Chunks<'a> {
-    /// Lays the table over the rest of the file and checks all that needs no decoding.
+    /// Finds the chunks in what lies between header and checksum, and checks all that needs no decoding.
     ///
     /// # Errors
-    /// [`Error::Format`] for flags, ids or lengths that the specification forbids.
-    pub fn lay_out(header: &Header, table: &[Entry], mut rest: &'a [u8], limits: &Limits) -> Result<Self> {
-        let mut chunks: Vec<(Entry, &[u8])> = Vec::with_capacity(table.len());
+    /// [`Error::Format`] for ids or lengths that the specification forbids.
+    pub fn lay_out(header: &Header, body: &'a [u8], limits: &Limits) -> Result<Self> {
+        let mut chunks: Vec<(Entry, &[u8])> = Vec::new();
+        let mut fields = Fields(body);
         let mut decoded = 0;
-        for entry in table {
-            let place = || format!("chunk {}", entry.name());
+        while !fields.0.is_empty() {
+            let entry = Entry::read(&mut fields)?;
+            let fault = |what: String| Err(Error::format(format!("chunk {}", entry.name()), what));
             if chunks.iter().any(|(other, _)| other.id == entry.id) {
-                return Err(Error::format(place(), "appears twice"));
+                return fault("appears twice".into());
             }
-            if entry.flags & !(CHUNK_REQUIRED | CHUNK_ZSTD) != 0 {
-                return Err(Error::format(place(), format!("has unknown flags {:#04x}", entry.flags)));
+            if chunks.len() == MOST_CHUNKS {
+                return fault(format!("is one more than {MOST_CHUNKS}"));
             }
-            let Some((bytes, after)) = rest.split_at_checked(entry.coded as usize) else {
-                return Err(Error::format(
-                    place(),
-                    format!("needs {} bytes, {} are left", entry.coded, rest.len()),
-                ));
+            let Some((bytes, after)) = fields.0.split_at_checked(entry.coded as usize) else {
+                return fault(format!("needs {} bytes, {} are left", entry.coded, fields.0.len()));
             };
-            rest = after;
-            if crc32fast::hash(bytes) != entry.check {
-                return Err(Error::format(place(), "its checksum does not match; the file is damaged"));
-            }
+            fields.0 = after;
             if entry.id == SPLATS_ID && entry.flags & CHUNK_ZSTD != 0 {
-                return Err(Error::format(place(), "is coded by zstd, which makes it no shorter"));
+                return fault("is coded by zstd, which makes it no shorter".into());
             }
             match most_bytes(entry.id, header) {
                 Some(most) if u64::from(entry.raw) > most || entry.raw == 0 => {
-                    return Err(Error::format(
-                        place(),
-                        format!("states {} bytes, 1 to {most} are possible", entry.raw),
-                    ));
+                    return fault(format!("states {} bytes, 1 to {most} are possible", entry.raw));
                 }
                 None if entry.flags & CHUNK_REQUIRED != 0 => {
-                    return Err(Error::format(place(), "is unknown here but required; update this reader"));
+                    return fault("is unknown here but required; update this reader".into());
                 }
                 Some(_) => decoded += u64::from(entry.raw),
                 None => {}
             }
-            chunks.push((*entry, bytes));
-        }
-        if !rest.is_empty() {
-            return Err(Error::format("end of file", format!("{} bytes follow the last chunk", rest.len())));
+            chunks.push((entry, bytes));
         }
         limits.check("decoded bytes", decoded, limits.decoded_bytes)?;
         Ok(Self(chunks))
+    }
+
+    /// What stands before each chunk, in the order of the file.
+    pub fn entries(&self) -> impl Iterator<Item = &Entry> {
+        self.0.iter().map(|(entry, _)| entry)
     }
 
     /// A chunk by its id.

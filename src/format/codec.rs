@@ -3,7 +3,8 @@
 //! A coded chunk is a zstd frame (RFC 8878) without its first four bytes, which are the same
 //! in all frames, or the bytes as they are where that is no longer.
 
-use super::layout::{CHUNK_ZSTD, Entry};
+use super::entry::{CHUNK_ZSTD, Entry};
+use super::fields::LONGEST;
 use crate::error::{Error, Result};
 
 /// The four bytes that start every zstd frame.
@@ -12,7 +13,7 @@ pub const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// High enough that more buys less than a percent; chunks are small, so time is no matter.
 const LEVEL: i32 = 19;
 
-/// A chunk's table entry, and its bytes in the file.
+/// What stands before a chunk, and its bytes in the file.
 pub type Coded = (Entry, Vec<u8>);
 
 /// A chunk as zstd codes it.
@@ -23,7 +24,10 @@ pub fn code(id: [u8; 4], required: u8, raw: &[u8]) -> Result<Coded> {
     let frame = zstd::bulk::compress(raw, LEVEL)
         .map_err(|error| Error::Internal(format!("zstd refused: {error}")))?;
     match frame.strip_prefix(&ZSTD_MAGIC) {
-        Some(frame) if frame.len() < raw.len() => entry(id, required | CHUNK_ZSTD, raw.len(), frame.to_vec()),
+        // Its raw length is stated as well.
+        Some(frame) if frame.len() + LONGEST < raw.len() => {
+            entry(id, required | CHUNK_ZSTD, raw.len(), frame.to_vec())
+        }
         _ => bare(id, required, raw.to_vec()),
     }
 }
@@ -40,26 +44,21 @@ fn entry(id: [u8; 4], flags: u8, raw: usize, coded: Vec<u8>) -> Result<Coded> {
     let length = |bytes: usize| {
         u32::try_from(bytes).map_err(|_| Error::Usage("a chunk passes 4 GiB; split the model".into()))
     };
-    let check = crc32fast::hash(&coded);
-    Ok((Entry { id, flags, raw: length(raw)?, coded: length(coded.len())?, check }, coded))
+    Ok((Entry { id, flags, raw: length(raw)?, coded: length(coded.len())? }, coded))
 }
 
 /// The chunk's bytes decoded: exactly `entry.raw` of them.
 ///
-/// The caller has checked `entry.raw` against the limits, and the checksum; no more than that
-/// is allocated or decoded.
+/// The caller has checked `entry.raw` against the limits; no more than that is allocated or decoded.
 ///
 /// # Errors
 /// [`Error::Format`] for a frame that is damaged or of another length.
 pub fn decode(entry: &Entry, coded: &[u8]) -> Result<Vec<u8>> {
-    let place = || format!("chunk {}", entry.name());
-    let raw = entry.raw as usize;
     if entry.flags & CHUNK_ZSTD == 0 {
-        if coded.len() != raw {
-            return Err(Error::format(place(), format!("has {} bytes instead of {raw}", coded.len())));
-        }
         return Ok(coded.to_vec());
     }
+    let place = || format!("chunk {}", entry.name());
+    let raw = entry.raw as usize;
     let frame = [&ZSTD_MAGIC, coded].concat();
     let bytes = zstd::bulk::decompress(&frame, raw)
         .map_err(|error| Error::format(place(), format!("does not decode to {raw} bytes: {error}")))?;
@@ -80,9 +79,10 @@ mod tests {
             let (entry, coded) = code(*b"TEST", 0, &raw).unwrap();
             assert_eq!((entry.flags, entry.coded as usize), (flags, coded.len()));
             assert_eq!(decode(&entry, &coded).unwrap(), raw);
-            for wrong in [entry.raw - 1, entry.raw + 1, 0] {
-                assert!(decode(&Entry { raw: wrong, ..entry }, &coded).is_err());
-            }
+        }
+        let (entry, coded) = code(*b"TEST", 0, &[7; 1000]).unwrap();
+        for wrong in [entry.raw - 1, entry.raw + 1, 0] {
+            assert!(decode(&Entry { raw: wrong, ..entry }, &coded).is_err());
         }
     }
 }

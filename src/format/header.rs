@@ -1,8 +1,6 @@
 //! What the header says: made from an asset, and checked before it is believed.
 
-use glam::DVec3;
-
-use super::grid::{GUESS_BEND, GUESS_SPIN, Grids, Steps};
+use super::grid::{Grids, STEPS, Steps};
 use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, KNOWN_REQUIRED};
 use super::limits::Limits;
 use super::record::Record;
@@ -20,14 +18,17 @@ pub const MOST_BUDGET: f64 = 16.0;
 /// only a wrong number lies outside, and no product of a few lengths can overflow.
 pub const DIAGONAL_RANGE: f64 = (1_u64 << 60) as f64;
 
+/// The achieved error is told in so many parts of the budget.
+const PARTS: f64 = 8192.0;
+
 /// Refuses numbers that no header may state, in words that name the field.
-fn fault(frame: &Frame, diagonal: f64, max_error: f64, fit: &[f32; 3]) -> Option<(&'static str, String)> {
-    // Every condition is phrased so that a NaN fails it.
-    if !frame.origin.is_finite() {
-        return Some(("origin", format!("{} is not finite", frame.origin)));
-    }
+fn fault(frame: &Frame, diagonal: f64, max_error: f64) -> Option<(&'static str, String)> {
+    // Every condition is phrased so that a NaN fails it. The origin's steps depend on the exponent.
     if frame.exponent.unsigned_abs() > EXPONENT_LIMIT.unsigned_abs() {
         return Some(("exponent", format!("{} is not within {EXPONENT_LIMIT}", frame.exponent)));
+    }
+    if !frame.origin.is_finite() {
+        return Some(("origin", format!("{} is not finite", frame.origin)));
     }
     if !(1.0 / DIAGONAL_RANGE..=DIAGONAL_RANGE).contains(&diagonal) {
         return Some(("diagonal", format!("{diagonal} is not within 2^-60 to 2^60")));
@@ -35,24 +36,45 @@ fn fault(frame: &Frame, diagonal: f64, max_error: f64, fit: &[f32; 3]) -> Option
     if !(LEAST_BUDGET * diagonal..=MOST_BUDGET * diagonal).contains(&max_error) {
         return Some(("max error", format!("{max_error} is not within 2^-24 to 16 diagonals of {diagonal}")));
     }
-    let bad = fit.iter().find(|part| !(0.0..=f32::MAX).contains(*part))?;
-    Some(("fit", format!("is {bad} of the budget, not a finite part")))
+    None
 }
 
-/// The achieved error in parts of the budget. No more digits are kept than mean something; one within the
-/// budget stays within it.
-fn parts(asset: &Asset) -> [f32; 3] {
-    [asset.fit.rms, asset.fit.p99, asset.fit.max].map(|error| (error / asset.max_error) as f32)
+fn refused(field: &str, why: &str) -> Error {
+    Error::Usage(format!("cannot store the asset: {field} {why}"))
+}
+
+/// What a number of parts says.
+fn error_of(parts: u32, max_error: f64) -> f64 {
+    f64::from(parts) / PARTS * max_error
+}
+
+/// The least number of parts that does not understate an error; one within the budget stays within it.
+fn parts_of(error: f64, max_error: f64) -> Result<u32> {
+    let near = error / max_error * PARTS;
+    if !(0.0..f64::from(u32::MAX)).contains(&near) {
+        return Err(refused("fit", &format!("{error} is not within 0 to 2^19 budgets of {max_error}")));
+    }
+    // The quotient is off by a rounding, so that the number may be one to either side.
+    let least = (near as u32).saturating_sub(1);
+    Ok((least..u32::MAX).find(|&parts| error_of(parts, max_error) >= error).unwrap_or(u32::MAX))
+}
+
+/// The parts that an asset's file states.
+fn fit_parts(asset: &Asset) -> Result<[u32; 3]> {
+    let parts = |error: f64| parts_of(error, asset.max_error);
+    Ok([parts(asset.fit.rms)?, parts(asset.fit.p99)?, parts(asset.fit.max)?])
 }
 
 /// The achieved error as a file gives it back.
-#[must_use]
-pub fn snapped_fit(asset: &Asset) -> Accuracy {
-    accuracy(parts(asset), asset.max_error)
+///
+/// # Errors
+/// As [`check_asset`].
+pub fn snapped_fit(asset: &Asset) -> Result<Accuracy> {
+    Ok(accuracy(fit_parts(asset)?, asset.max_error))
 }
 
-fn accuracy(parts: [f32; 3], max_error: f64) -> Accuracy {
-    let [rms, p99, max] = parts.map(|part| f64::from(part) * max_error);
+fn accuracy(parts: [u32; 3], max_error: f64) -> Accuracy {
+    let [rms, p99, max] = parts.map(|parts| error_of(parts, max_error));
     Accuracy { rms, p99, max }
 }
 
@@ -61,17 +83,17 @@ fn accuracy(parts: [f32; 3], max_error: f64) -> Accuracy {
 /// # Errors
 /// [`Error::Usage`].
 pub fn check_asset(asset: &Asset) -> Result<()> {
-    match fault(&asset.frame, asset.diagonal, asset.max_error, &parts(asset)) {
-        Some((field, why)) => Err(Error::Usage(format!("cannot store the asset: {field} {why}"))),
-        None => Ok(()),
+    match fault(&asset.frame, asset.diagonal, asset.max_error) {
+        Some((field, why)) => Err(refused(field, &why)),
+        None => fit_parts(asset).map(drop),
     }
 }
 
 /// The header of an asset's file.
 ///
 /// # Errors
-/// [`Error::Usage`] for more splats or clips than 32 bits count.
-pub fn header_of(asset: &Asset, grids: &Grids, records: &[Record], chunks: usize) -> Result<Header> {
+/// As [`check_asset`]; [`Error::Usage`] for more splats or clips than 32 bits count.
+pub fn header_of(asset: &Asset, grids: &Grids, records: &[Record]) -> Result<Header> {
     let count = |n: usize| {
         u32::try_from(n)
             .map_err(|_| Error::Usage(format!("cannot store {n} splats or clips in one file; split it")))
@@ -80,24 +102,26 @@ pub fn header_of(asset: &Asset, grids: &Grids, records: &[Record], chunks: usize
     let (straight, curved) = (clips().filter(|c| c.rho == 0).count(), clips().filter(|c| c.rho != 0).count());
     let quadrics = records.iter().any(|record| record.bend != [0; 2]);
     let partnered = asset.splats.iter().any(|splat| !splat.partners.is_empty());
-    let steps = grids.steps;
     let flag = |on: bool, bit: u32| if on { bit } else { 0 };
     Ok(Header {
         required: flag(quadrics, HAS_QUADRICS) | flag(straight + curved > 0, HAS_CLIPS),
         optional: flag(asset.has_colors, HAS_COLORS) | flag(partnered, HAS_PARTNERS),
+        guesses: grids.guesses,
         splats: count(records.len())?,
         straight: count(straight)?,
         curved: count(curved)?,
-        chunks: chunks as u8,
-        reserved: 0,
-        steps: [steps.cell, steps.height, steps.slide, steps.tilt, steps.bend, steps.spin, steps.clip],
-        guesses: grids.guesses,
-        exponent: asset.frame.exponent,
-        origin: asset.frame.origin.to_array(),
+        steps: (grids.steps != STEPS).then(|| listed(&grids.steps)),
+        frame: asset.frame,
         diagonal: asset.diagonal,
         max_error: asset.max_error,
-        fit: parts(asset),
+        fit: fit_parts(asset)?,
     })
+}
+
+/// The steps in the order of the file.
+fn listed(steps: &Steps) -> [u8; 7] {
+    let Steps { cell, height, slide, tilt, bend, spin, clip } = *steps;
+    [cell, height, slide, tilt, bend, spin, clip]
 }
 
 impl Header {
@@ -111,35 +135,27 @@ impl Header {
             let what = format!("{unknown:#010x} are unknown to this reader; update it");
             return Err(Error::format("required features", what));
         }
-        if self.reserved != 0 {
-            return Err(Error::format("reserved byte", format!("is {}, not 0", self.reserved)));
-        }
-        if let Some((field, why)) = fault(&self.frame(), self.diagonal, self.max_error, &self.fit) {
+        if let Some((field, why)) = fault(&self.frame, self.diagonal, self.max_error) {
             return Err(Error::format(field, why));
         }
         self.grids().steps.check()?;
-        if self.guesses & !(GUESS_BEND | GUESS_SPIN) != 0 {
-            return Err(Error::format("guesses", format!("{:#04x} is unknown to this reader", self.guesses)));
-        }
         limits.check("splats", u64::from(self.splats), limits.splats)?;
         limits.check("clip curves", u64::from(self.straight) + u64::from(self.curved), limits.clips)
-    }
-
-    /// The frame.
-    #[must_use]
-    pub fn frame(&self) -> Frame {
-        Frame { origin: DVec3::from_array(self.origin), exponent: self.exponent }
     }
 
     /// The grids.
     #[must_use]
     pub fn grids(&self) -> Grids {
-        let [cell, height, slide, tilt, bend, spin, clip] = self.steps;
-        Grids {
-            budget: self.max_error,
-            steps: Steps { cell, height, slide, tilt, bend, spin, clip },
-            guesses: self.guesses,
-        }
+        let steps = self.steps.map_or(STEPS, |[cell, height, slide, tilt, bend, spin, clip]| Steps {
+            cell,
+            height,
+            slide,
+            tilt,
+            bend,
+            spin,
+            clip,
+        });
+        Grids { budget: self.max_error, steps, guesses: self.guesses }
     }
 
     /// The achieved error.

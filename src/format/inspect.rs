@@ -1,7 +1,8 @@
 //! What a file holds, and what of it takes how many bytes.
 
-use super::chunks::{COLOR_ID, Chunks, PARTNERS_ID, SPLATS_ID, most_bytes};
-use super::layout::{CHUNK_REQUIRED, CHUNK_ZSTD, HAS_COLORS, Header, VERSION, read_head};
+use super::chunks::{Chunks, most_bytes};
+use super::entry::{CHUNK_REQUIRED, CHUNK_ZSTD, COLOR_ID, Entry, PARTNERS_ID, SPLATS_ID};
+use super::layout::{HAS_COLORS, Header, VERSION};
 use super::limits::Limits;
 use super::read::{open, read_splats};
 use super::tape::{PARTS, Reader};
@@ -18,7 +19,7 @@ pub struct FileInfo {
     pub optional_features: u32,
     /// Bytes of the whole file.
     pub bytes: u64,
-    /// Bytes of header, table and their checksum.
+    /// Bytes of the header, of what stands before each chunk, and of the checksum: all but the chunks'.
     pub head_bytes: u64,
     /// Splats.
     pub splats: u32,
@@ -84,9 +85,8 @@ const OPTIONAL: [([u8; 4], &str, &str); 3] = [
 /// As [`super::decode`].
 pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<FileInfo> {
     let (header, chunks) = open(bytes, limits)?;
-    let (_, table, head_bytes) = read_head(bytes)?;
     let name = |id: [u8; 4]| String::from_utf8_lossy(&id).into_owned();
-    let chunk = |entry: &super::layout::Entry| ChunkInfo {
+    let chunk = |entry: &Entry| ChunkInfo {
         id: entry.name(),
         known: most_bytes(entry.id, &header).is_some(),
         required: entry.flags & CHUNK_REQUIRED != 0,
@@ -104,16 +104,17 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<FileInfo> {
         .filter(|(id, ..)| chunks.find(*id).is_none())
         .map(|(id, what, reason)| Absent { id: name(*id), what: (*what).to_owned(), why: why(*id, reason) })
         .collect();
+    let coded: u64 = chunks.entries().map(|entry| u64::from(entry.coded)).sum();
     Ok(FileInfo {
-        version: VERSION,
+        version: u16::from(VERSION),
         required_features: header.required,
         optional_features: header.optional,
         bytes: bytes.len() as u64,
-        head_bytes: head_bytes as u64,
+        head_bytes: bytes.len() as u64 - coded,
         splats: header.splats,
         straight_clips: header.straight,
         curved_clips: header.curved,
-        chunks: table.iter().map(chunk).collect(),
+        chunks: chunks.entries().map(chunk).collect(),
         fields: fields(&header, &chunks)?,
         absent,
     })

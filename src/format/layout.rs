@@ -1,20 +1,22 @@
-//! The raw layer: header and table of chunks, byte by byte as `format-spec.md` prints them.
+//! The raw layer: the header, byte by byte as `format-spec.md` prints it, and the checksum.
 
+use glam::DVec3;
+
+use super::fields::{Fields, VARINT_END, push};
+use super::symbol::{unzigzag, zigzag};
 use crate::error::{Error, Result};
+use crate::model::frame::Frame;
 
-/// The first eight bytes. The high bit and the line ends reveal a transfer as text.
-pub const MAGIC: [u8; 8] = *b"\x89QSP\r\n\x1a\n";
+/// The first four bytes. The high bit reveals a transfer as text.
+pub const MAGIC: [u8; 4] = *b"\x89QSP";
 
-/// The version this crate writes and reads.
-pub const VERSION: u16 = 2;
+/// The version this crate writes and reads: the byte after the magic.
+pub const VERSION: u8 = 3;
 
-/// Bytes of the header.
-pub const HEADER_BYTES: usize = 96;
+/// What versions 1 and 2 had there: their magic went on with a line end.
+const LINE_END: u8 = b'\r';
 
-/// Bytes of one entry of the table of chunks.
-pub const ENTRY_BYTES: usize = 17;
-
-/// Bytes of the checksum after the table.
+/// Bytes of the checksum, the last of the file.
 pub const CHECK_BYTES: usize = 4;
 
 /// Required feature: there are quadrics.
@@ -28,10 +30,16 @@ pub const HAS_COLORS: u32 = 1;
 /// Optional feature: there are clip partners.
 pub const HAS_PARTNERS: u32 = 2;
 
-/// Chunk flag: a reader that does not know the chunk must refuse the file.
-pub const CHUNK_REQUIRED: u8 = 1;
-/// Chunk flag: the bytes are a zstd frame without its four magic bytes.
-pub const CHUNK_ZSTD: u8 = 2;
+/// Form: the guesses.
+const GUESSES: u8 = 3;
+/// Form: the steps are stated.
+const OWN_STEPS: u8 = 4;
+/// Form: the origin is three numbers of 64 bits, not of whole steps.
+const FREE_ORIGIN: u8 = 8;
+/// Form: diagonal and error budget have 64 bits, not 32.
+const LONG_LENGTHS: u8 = 16;
+/// Every bit of the form this version knows.
+const KNOWN_FORM: u8 = GUESSES | OWN_STEPS | FREE_ORIGIN | LONG_LENGTHS;
 
 /// The header, field by field.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,184 +48,161 @@ pub struct Header {
     pub required: u32,
     /// Features a reader may ignore.
     pub optional: u32,
+    /// What is guessed from the nearest splat: 1 the sagittas, 2 the turn.
+    pub guesses: u8,
     /// Splats.
     pub splats: u32,
     /// Straight clip curves over all splats.
     pub straight: u32,
     /// Curved clip curves over all splats.
     pub curved: u32,
-    /// Entries of the table of chunks.
-    pub chunks: u8,
-    /// Kept for later: 0.
-    pub reserved: u8,
-    /// `cell, height, slide, tilt, bend, spin, clip`.
-    pub steps: [u8; 7],
-    /// What is guessed from the nearest splat: 1 the sagittas, 2 the turn.
-    pub guesses: u8,
-    /// The frame's exponent.
-    pub exponent: i32,
-    /// The frame's origin, input units.
-    pub origin: [f64; 3],
+    /// `cell, height, slide, tilt, bend, spin, clip`; `None` for those of the version.
+    pub steps: Option<[u8; 7]>,
+    /// The frame.
+    pub frame: Frame,
     /// Diagonal, model units.
     pub diagonal: f64,
     /// Error budget, model units.
     pub max_error: f64,
-    /// Achieved `rms, p99, max`, parts of `max_error`.
-    pub fit: [f32; 3],
+    /// Achieved `rms, p99, max`, in parts of `max_error` as [`super::header`] counts them.
+    pub fit: [u32; 3],
 }
 
-/// One entry of the table of chunks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Entry {
-    /// Four printable characters.
-    pub id: [u8; 4],
-    /// [`CHUNK_REQUIRED`] and [`CHUNK_ZSTD`].
-    pub flags: u8,
-    /// Bytes when decoded.
-    pub raw: u32,
-    /// Bytes in the file.
-    pub coded: u32,
-    /// CRC-32 of the bytes in the file.
-    pub check: u32,
-}
-
-impl Entry {
-    /// The id as text.
-    #[must_use]
-    pub fn name(&self) -> String {
-        self.id
-            .iter()
-            .map(|&byte| if byte.is_ascii_graphic() || byte == b' ' { byte as char } else { '?' })
-            .collect()
-    }
-}
-
-/// Header, table and checksum.
+/// The header's bytes.
 #[must_use]
-pub fn write_head(header: &Header, table: &[Entry]) -> Vec<u8> {
-    let mut out = Vec::with_capacity(HEADER_BYTES + table.len() * ENTRY_BYTES + CHECK_BYTES);
-    out.extend(MAGIC);
-    out.extend(VERSION.to_le_bytes());
-    out.push(header.chunks);
-    out.push(header.reserved);
-    for word in [header.required, header.optional, header.splats, header.straight, header.curved] {
-        out.extend(word.to_le_bytes());
+pub fn write_header(header: &Header) -> Vec<u8> {
+    let lengths = [header.diagonal, header.max_error];
+    let (origin, short) = (steps_of(&header.frame), short(lengths));
+    let flag = |on: bool, bit: u8| if on { bit } else { 0 };
+    let form = header.guesses
+        | flag(header.steps.is_some(), OWN_STEPS)
+        | flag(origin.is_none(), FREE_ORIGIN)
+        | flag(short.is_none(), LONG_LENGTHS);
+    let mut out = [MAGIC.as_slice(), &[VERSION]].concat();
+    push(&mut out, u64::from(header.required));
+    push(&mut out, u64::from(header.optional));
+    out.push(form);
+    for count in [header.splats, header.straight, header.curved] {
+        push(&mut out, u64::from(count));
     }
-    out.extend(header.steps);
-    out.push(header.guesses);
-    out.extend(header.exponent.to_le_bytes());
-    for value in header.origin.iter().chain([&header.diagonal, &header.max_error]) {
-        out.extend(value.to_le_bytes());
+    out.extend(header.steps.iter().flatten());
+    push(&mut out, zigzag(i64::from(header.frame.exponent)));
+    match origin {
+        Some(steps) => steps.into_iter().for_each(|number| push(&mut out, zigzag(number))),
+        None => out.extend(header.frame.origin.to_array().into_iter().flat_map(f64::to_le_bytes)),
     }
-    for part in header.fit {
-        out.extend(part.to_le_bytes());
+    match short {
+        Some(short) => out.extend(short.into_iter().flat_map(f32::to_le_bytes)),
+        None => out.extend(lengths.into_iter().flat_map(f64::to_le_bytes)),
     }
-    for entry in table {
-        out.extend(entry.id);
-        out.push(entry.flags);
-        for word in [entry.raw, entry.coded, entry.check] {
-            out.extend(word.to_le_bytes());
-        }
+    for parts in header.fit {
+        push(&mut out, u64::from(parts));
     }
-    let check = crc32fast::hash(&out);
-    out.extend(check.to_le_bytes());
     out
 }
 
-/// Takes fields off the front of a byte string.
-struct Fields<'a>(&'a [u8]);
-
-impl Fields<'_> {
-    fn take<const N: usize>(&mut self, name: &str) -> Result<[u8; N]> {
-        let Some((first, rest)) = self.0.split_first_chunk::<N>() else {
-            return Err(Error::format(name, "the file ends here; it was cut short"));
-        };
-        self.0 = rest;
-        Ok(*first)
-    }
-
-    fn word(&mut self, name: &str) -> Result<u32> {
-        Ok(u32::from_le_bytes(self.take(name)?))
-    }
-
-    fn float(&mut self, name: &str) -> Result<f64> {
-        Ok(f64::from_le_bytes(self.take(name)?))
-    }
-
-    fn part(&mut self, name: &str) -> Result<f32> {
-        Ok(f32::from_le_bytes(self.take(name)?))
-    }
+/// A frame's origin in whole steps; `None` if it is not, or too far off for a number.
+fn steps_of(frame: &Frame) -> Option<[i64; 3]> {
+    let steps = (frame.origin / frame.step()).round();
+    let near = steps.abs().max_element() < (VARINT_END / 2) as f64;
+    (near && steps * frame.step() == frame.origin).then(|| steps.to_array().map(|step| step as i64))
 }
 
-/// Parses header and table; also gives the offset of the first chunk.
-///
-/// Checks magic, version and checksum, but no meaning.
+/// Lengths in 32 bits; `None` if that changes one.
+fn short(lengths: [f64; 2]) -> Option<[f32; 2]> {
+    let short = lengths.map(|length| length as f32);
+    let exact = short.map(|length| f64::from(length).to_bits()) == lengths.map(f64::to_bits);
+    exact.then_some(short)
+}
+
+/// Ends a file: appends the checksum of all its bytes.
+pub fn seal(file: &mut Vec<u8>) {
+    let check = crc32fast::hash(file);
+    file.extend(check.to_le_bytes());
+}
+
+/// Checks magic, version and checksum of a file, and parses its header; also gives what lies between
+/// header and checksum. Checks no meaning.
 ///
 /// # Errors
 /// [`Error::Format`].
-pub fn read_head(bytes: &[u8]) -> Result<(Header, Vec<Entry>, usize)> {
-    let mut fields = Fields(bytes);
-    if fields.take::<8>("magic")? != MAGIC {
-        return Err(Error::format("magic", "the first 8 bytes are not those of a .qsplat file"));
-    }
-    let version = u16::from_le_bytes(fields.take("version")?);
-    if version != VERSION {
-        let remedy = if version > VERSION { "update it" } else { "bake the file anew" };
-        return Err(Error::format(
-            "version",
-            format!("{version}, but this reader knows {VERSION}; {remedy}"),
-        ));
-    }
-    let [chunks, reserved] = fields.take("chunk count")?;
-    let header = read_fields(&mut fields, chunks, reserved)?;
-    let table = (0..chunks).map(|n| read_entry(&mut fields, n)).collect::<Result<Vec<_>>>()?;
-    let end = bytes.len() - fields.0.len();
-    let stated = fields.word("header checksum")?;
-    if crc32fast::hash(&bytes[..end]) != stated {
-        return Err(Error::format("header checksum", "does not match; the file is damaged"));
-    }
-    Ok((header, table, end + CHECK_BYTES))
+pub fn read_header(file: &[u8]) -> Result<(Header, &[u8])> {
+    let mut fields = Fields(unsealed(file)?);
+    let header = read_fields(&mut fields)?;
+    Ok((header, fields.0))
 }
 
-/// The header after its first twelve bytes.
-fn read_fields(fields: &mut Fields<'_>, chunks: u8, reserved: u8) -> Result<Header> {
+/// What lies between version and checksum.
+fn unsealed(file: &[u8]) -> Result<&[u8]> {
+    let Some(&version) = file.strip_prefix(&MAGIC).and_then(<[u8]>::first) else {
+        return Err(Error::format("magic", "the first bytes are not those of a .qsplat file"));
+    };
+    if version != VERSION {
+        let (version, remedy) = match version {
+            LINE_END => ("1 or 2".to_owned(), "bake the file anew"),
+            0..VERSION => (version.to_string(), "bake the file anew"),
+            _ => (version.to_string(), "update it"),
+        };
+        let what = format!("{version}, but this reader knows {VERSION}; {remedy}");
+        return Err(Error::format("version", what));
+    }
+    file.split_last_chunk::<CHECK_BYTES>()
+        .filter(|(said, check)| crc32fast::hash(said).to_le_bytes() == **check)
+        .and_then(|(said, _)| said.get(MAGIC.len() + 1..))
+        .ok_or_else(|| Error::format("checksum", "does not match; the file is damaged or cut short"))
+}
+
+fn read_fields(fields: &mut Fields<'_>) -> Result<Header> {
     let required = fields.word("required features")?;
     let optional = fields.word("optional features")?;
+    let [form] = fields.take("form")?;
+    if form & !KNOWN_FORM != 0 {
+        return Err(Error::format("form", format!("{form:#04x} is unknown to this reader; update it")));
+    }
     let splats = fields.word("splat count")?;
     let straight = fields.word("straight clip count")?;
     let curved = fields.word("curved clip count")?;
-    let steps = fields.take("steps")?;
-    let [guesses] = fields.take("guesses")?;
-    let exponent = i32::from_le_bytes(fields.take("exponent")?);
-    let mut float = |name| fields.float(name);
-    let origin = [float("origin")?, float("origin")?, float("origin")?];
-    let (diagonal, max_error) = (float("diagonal")?, float("max error")?);
-    let mut part = |name| fields.part(name);
-    let fit = [part("fit rms")?, part("fit p99")?, part("fit max")?];
+    let steps = if form & OWN_STEPS != 0 { Some(fields.take("steps")?) } else { None };
+    let exponent = unzigzag(u64::from(fields.word("exponent")?)) as i32;
+    let frame = read_frame(fields, exponent, form & FREE_ORIGIN != 0)?;
+    let mut length = |name| read_length(fields, name, form & LONG_LENGTHS != 0);
+    let (diagonal, max_error) = (length("diagonal")?, length("max error")?);
+    let fit = [fields.word("fit rms")?, fields.word("fit p99")?, fields.word("fit max")?];
     Ok(Header {
         required,
         optional,
+        guesses: form & GUESSES,
         splats,
         straight,
         curved,
-        chunks,
-        reserved,
         steps,
-        guesses,
-        exponent,
-        origin,
+        frame,
         diagonal,
         max_error,
         fit,
     })
 }
 
-fn read_entry(fields: &mut Fields<'_>, number: u8) -> Result<Entry> {
-    let place = format!("chunk table, entry {number}");
-    let id = fields.take(&place)?;
-    let [flags] = fields.take(&place)?;
-    let (raw, coded, check) = (fields.word(&place)?, fields.word(&place)?, fields.word(&place)?);
-    Ok(Entry { id, flags, raw, coded, check })
+/// The frame of this exponent; its origin follows, free or in whole steps.
+fn read_frame(fields: &mut Fields<'_>, exponent: i32, free: bool) -> Result<Frame> {
+    let frame = Frame { origin: DVec3::ZERO, exponent };
+    let mut origin = [0.0; 3];
+    for x in &mut origin {
+        *x = if free {
+            f64::from_le_bytes(fields.take("origin")?)
+        } else {
+            unzigzag(fields.varint("origin")?) as f64 * frame.step()
+        };
+    }
+    Ok(Frame { origin: origin.into(), ..frame })
+}
+
+fn read_length(fields: &mut Fields<'_>, name: &str, long: bool) -> Result<f64> {
+    Ok(if long {
+        f64::from_le_bytes(fields.take(name)?)
+    } else {
+        f64::from(f32::from_le_bytes(fields.take(name)?))
+    })
 }
 
 #[cfg(test)]
@@ -225,27 +210,51 @@ fn read_entry(fields: &mut Fields<'_>, number: u8) -> Result<Entry> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_sizes_are_those_of_the_specification() {
-        let header = Header {
+    /// A header whose every field is of the short form.
+    fn header() -> Header {
+        Header {
             required: 1,
             optional: 2,
-            splats: 3,
+            guesses: 3,
+            splats: 300,
             straight: 4,
             curved: 5,
-            chunks: 2,
-            reserved: 6,
-            steps: [1, 2, 3, 4, 5, 6, 7],
-            guesses: 3,
-            exponent: -8,
-            origin: [9.0, 10.0, 11.0],
+            steps: None,
+            frame: Frame { origin: DVec3::new(1.5, -2.5, 1e6), exponent: 3 },
             diagonal: 12.0,
             max_error: 13.0,
-            fit: [14.0, 15.0, 16.0],
-        };
-        let entry = Entry { id: *b"ABCD", flags: 3, raw: 17, coded: 18, check: 19 };
-        let bytes = write_head(&header, &[entry, entry]);
-        assert_eq!(bytes.len(), HEADER_BYTES + 2 * ENTRY_BYTES + CHECK_BYTES);
-        assert_eq!(read_head(&bytes).unwrap(), (header, vec![entry, entry], bytes.len()));
+            fit: [14, 1500, 16],
+        }
+    }
+
+    fn whole(header: &Header) -> Vec<u8> {
+        let mut file = write_header(header);
+        seal(&mut file);
+        file
+    }
+
+    #[test]
+    fn headers_come_back_short_or_long() {
+        let short = header();
+        let steps = Header { steps: Some([1, 2, 3, 4, 5, 6, 7]), ..header() };
+        let far = Header { frame: Frame { exponent: -50, ..header().frame }, ..header() };
+        let off = Header { frame: Frame { origin: DVec3::splat(0.1), exponent: 0 }, ..header() };
+        let long = Header { max_error: 0.1, ..header() };
+        for (header, more) in [(short, 0), (steps, 7), (far, 24 - 8), (off, 24 - 8), (long, 8)] {
+            let file = whole(&header);
+            assert_eq!(file.len(), 33 + CHECK_BYTES + more, "{header:?}");
+            assert_eq!(read_header(&file).unwrap(), (header, &[][..]));
+        }
+    }
+
+    #[test]
+    fn other_versions_say_what_helps() {
+        for (version, words) in [(b'\r', "1 or 2"), (2, "bake the file anew"), (4, "update"), (255, "update")]
+        {
+            let mut file = whole(&header());
+            file[MAGIC.len()] = version;
+            let message = read_header(&file).unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The `.qsplat` file, version 2: `format-spec.md` is its normative description.
+//! The `.qsplat` file, version 3: `format-spec.md` is its normative description.
 //!
 //! Writing, in order:
 //! 1. [`quantize`] rounds each splat to the grids of [`grid`], within a proved share of the
@@ -7,7 +7,8 @@
 //! 3. `walk` carries each record onto a tape of symbols and extra bits, as differences from
 //!    what `predict` guesses from the splats before it; `coder` makes each symbol as short as its
 //!    field's symbols before it tell.
-//! 4. `codec` codes what is optional with zstd; `layout` puts header, table and chunks together.
+//! 4. `codec` codes what is optional with zstd; `layout` puts a header before the chunks and a checksum
+//!    behind.
 //!
 //! Reading does the same backwards, under [`Limits`].
 //!
@@ -47,6 +48,8 @@ mod clip;
 mod codec;
 mod coder;
 mod color;
+mod entry;
+mod fields;
 pub mod grid;
 mod header;
 mod inspect;

@@ -3,19 +3,20 @@
 //! Partnership is mutual, so a pair is listed once, by the splat that comes first in the file.
 //! `format-spec.md`, section 8.2, is the norm.
 
+use super::fields::{Fields, LONGEST, push};
 use super::limits::Limits;
 use crate::error::{Error, Result};
 use crate::model::partner::{Cut, Group, Partner};
 use crate::model::splat::Splat;
+
+/// What errors call the chunk.
+const PLACE: &str = "chunk PART";
 
 /// The layout of the chunk that this crate writes and reads.
 const VERSION: u8 = 1;
 
 /// No file holds more pairs than this many times its splats.
 const MOST_PAIRS: u64 = 64;
-
-/// Bytes of the longest number: `4 * 2^32` has 34 bits, seven of them in a byte.
-const LONGEST: usize = 5;
 
 /// Bytes of the chunk for each splat, at most: two numbers for each splat, and for each pair one
 /// and a label on either side. (The byte of the version is less than what is never reached.)
@@ -56,6 +57,7 @@ pub fn split(splats: &[Splat], order: &[u32]) -> Result<Vec<u8>> {
         for link in later {
             let back = find(&links[link.other as usize], at as u32).map_or(Cut::Unseen, |back| back.cut);
             let sides = u64::from(link.cut == Cut::Seen) | u64::from(back == Cut::Seen) << 1;
+            // At most 34 bits, so at most LONGEST bytes.
             push(&mut bytes, u64::from(link.other - last - 1) << 2 | sides);
             last = link.other;
         }
@@ -139,23 +141,14 @@ fn arrange(bytes: &mut Vec<u8>, links: &[Link]) {
     }
 }
 
-/// Appends a number, seven bits a byte, the least significant first.
-fn push(bytes: &mut Vec<u8>, mut value: u64) {
-    while value > 0x7f {
-        bytes.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    bytes.push(value as u8);
-}
-
 /// Gives splats in the order of the file the partners that the chunk states.
 ///
 /// # Errors
 /// [`Error::Format`] for bytes that the specification forbids; [`Error::Limits`] for more pairs
 /// than the limits allow.
 pub fn join(bytes: &[u8], splats: &mut [Splat], max_error: f64, limits: &Limits) -> Result<()> {
-    let mut numbers = Numbers(bytes);
-    let version = numbers.byte()?;
+    let mut numbers = Fields(bytes);
+    let [version] = numbers.take(PLACE)?;
     if version != VERSION {
         return Err(fault(format!("is of version {version}, unknown to this reader; update it")));
     }
@@ -166,7 +159,7 @@ pub fn join(bytes: &[u8], splats: &mut [Splat], max_error: f64, limits: &Limits)
     };
     for (at, own) in links.into_iter().enumerate().filter(|(_, own)| !own.is_empty()) {
         let mut groups: Vec<Group> = Vec::new();
-        for link in numbers.arranged(own)? {
+        for link in arranged(&mut numbers, own)? {
             let partner = sheets(&link, splats);
             match link.label as usize {
                 0 => {}
@@ -180,20 +173,20 @@ pub fn join(bytes: &[u8], splats: &mut [Splat], max_error: f64, limits: &Limits)
 }
 
 fn fault(why: impl Into<String>) -> Error {
-    Error::format("chunk PART", why.into())
+    Error::format(PLACE, why.into())
 }
 
 /// The links of each splat, ascending, not yet labelled.
-fn pairs(numbers: &mut Numbers<'_>, count: usize, limits: &Limits) -> Result<Vec<Vec<Link>>> {
+fn pairs(numbers: &mut Fields<'_>, count: usize, limits: &Limits) -> Result<Vec<Vec<Link>>> {
     let mut links: Vec<Vec<Link>> = vec![Vec::new(); count];
     let mut pairs = 0;
     for at in 0..count {
-        let later = numbers.next()?;
+        let later = numbers.varint(PLACE)?;
         let mut last = at as u64;
         for _ in 0..later {
             pairs += 1;
             limits.check("clip partners", pairs, limits.partners)?;
-            let number = numbers.next()?;
+            let number = numbers.varint(PLACE)?;
             last += (number >> 2) + 1;
             if last >= count as u64 {
                 return Err(fault(format!("names splat {last} of {count}")));
@@ -208,51 +201,24 @@ fn pairs(numbers: &mut Numbers<'_>, count: usize, limits: &Limits) -> Result<Vec
     Ok(links)
 }
 
-/// The chunk's numbers from the first not yet read.
-struct Numbers<'a>(&'a [u8]);
-
-impl Numbers<'_> {
-    fn byte(&mut self) -> Result<u8> {
-        let Some((&first, rest)) = self.0.split_first() else { return Err(fault("ends too early")) };
-        self.0 = rest;
-        Ok(first)
-    }
-
-    fn next(&mut self) -> Result<u64> {
-        let mut value = 0;
-        for n in 0..LONGEST {
-            let byte = self.byte()?;
-            value |= u64::from(byte & 0x7f) << (7 * n);
-            if byte & 0x80 == 0 {
-                return if byte == 0 && n > 0 {
-                    Err(fault("has a number with idle bytes"))
-                } else {
-                    Ok(value)
-                };
-            }
+/// Labels a splat's links as the chunk's next numbers say.
+fn arranged(numbers: &mut Fields<'_>, mut links: Vec<Link>) -> Result<Vec<Link>> {
+    let arrangement = numbers.varint(PLACE)?;
+    let mut most = 0;
+    let single = links.len() == 1;
+    for (link, n) in links.iter_mut().zip(1..) {
+        link.label = match arrangement {
+            UNION => n,
+            INTERSECTION if !single => 1,
+            GROUPS => numbers.varint(PLACE)?,
+            other => return Err(fault(format!("arranges {n} partners in the unknown way {other}"))),
+        };
+        if link.label > most + 1 {
+            return Err(fault(format!("has a group {} after group {most}", link.label)));
         }
-        Err(fault(format!("has a number of more than {LONGEST} bytes")))
+        most = most.max(link.label);
     }
-
-    /// Labels a splat's links as the chunk's next numbers say.
-    fn arranged(&mut self, mut links: Vec<Link>) -> Result<Vec<Link>> {
-        let arrangement = self.next()?;
-        let mut most = 0;
-        let single = links.len() == 1;
-        for (link, n) in links.iter_mut().zip(1..) {
-            link.label = match arrangement {
-                UNION => n,
-                INTERSECTION if !single => 1,
-                GROUPS => self.next()?,
-                other => return Err(fault(format!("arranges {n} partners in the unknown way {other}"))),
-            };
-            if link.label > most + 1 {
-                return Err(fault(format!("has a group {} after group {most}", link.label)));
-            }
-            most = most.max(link.label);
-        }
-        Ok(links)
-    }
+    Ok(links)
 }
 
 #[cfg(test)]

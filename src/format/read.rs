@@ -1,8 +1,9 @@
 //! From the bytes of a file to an asset.
 
-use super::chunks::{COLOR_ID, Chunks, MOST_IN_BYTE, PARTNERS_ID, SPLATS_ID};
+use super::chunks::{Chunks, MOST_IN_BYTE};
 use super::color;
-use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, read_head};
+use super::entry::{COLOR_ID, PARTNERS_ID, SPLATS_ID};
+use super::layout::{HAS_CLIPS, HAS_COLORS, HAS_PARTNERS, HAS_QUADRICS, Header, read_header};
 use super::limits::Limits;
 use super::partners;
 use super::predict::History;
@@ -13,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::model::asset::Asset;
 use crate::model::splat::Splat;
 
-/// The asset in the bytes of a `.qsplat` file, version 2.
+/// The asset in the bytes of a `.qsplat` file, version 3.
 ///
 /// Every number of the result is finite and within the ranges of `format-spec.md`: radii are
 /// positive, axes orthonormal to 1e-15, `rho` in `(0, 1]` for curved clips. The result is the
@@ -29,7 +30,7 @@ pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Asset> {
     paint(&mut splats, &chunks, has_colors)?;
     link(&mut splats, &header, &chunks, limits)?;
     Ok(Asset {
-        frame: header.frame(),
+        frame: header.frame,
         diagonal: header.diagonal,
         max_error: header.max_error,
         fit: header.accuracy(),
@@ -41,9 +42,9 @@ pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Asset> {
 /// Parses and checks all that needs no decoding.
 pub(super) fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<(Header, Chunks<'a>)> {
     limits.check("file bytes", bytes.len() as u64, limits.file_bytes)?;
-    let (header, table, start) = read_head(bytes)?;
+    let (header, body) = read_header(bytes)?;
     header.check(limits)?;
-    let chunks = Chunks::lay_out(&header, &table, &bytes[start..], limits)?;
+    let chunks = Chunks::lay_out(&header, body, limits)?;
     Ok((header, chunks))
 }
 

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::chunks::{COLOR_ID, PARTNERS_ID, SPLATS_ID};
 use super::codec::{self, Coded};
 use super::color;
+use super::entry::{CHUNK_REQUIRED, COLOR_ID, PARTNERS_ID, SPLATS_ID};
 use super::grid::{GUESS_BEND, GUESS_SPIN, Grids};
 use super::header::{check_asset, header_of, snapped_fit};
-use super::layout::{CHUNK_REQUIRED, Entry, write_head};
+use super::layout::{seal, write_header};
 use super::limits::Limits;
 use super::order;
 use super::partners;
@@ -23,7 +23,7 @@ use crate::model::splat::Splat;
 /// The colour of splats without colours.
 const WHITE: [u8; 3] = [255; 3];
 
-/// The bytes of a `.qsplat` file, version 2.
+/// The bytes of a `.qsplat` file, version 3.
 ///
 /// The splats are rounded to the file's grids (see [`super::quantize`] for what that may move)
 /// and put into the file's own order, so a set of splats gives the same bytes in whatever
@@ -42,12 +42,12 @@ pub fn encode(asset: &Asset) -> Result<Vec<u8>> {
     if !partners.is_empty() {
         chunks.push(codec::code(PARTNERS_ID, 0, &partners)?);
     }
-    let header = header_of(asset, &grids, &records, chunks.len())?;
-    let table: Vec<Entry> = chunks.iter().map(|(entry, _)| *entry).collect();
-    let mut out = write_head(&header, &table);
-    for (_, bytes) in &chunks {
+    let mut out = write_header(&header_of(asset, &grids, &records)?);
+    for (entry, bytes) in &chunks {
+        entry.write(&mut out);
         out.extend(bytes);
     }
+    seal(&mut out);
     Ok(out)
 }
 
@@ -65,7 +65,7 @@ pub fn snap(asset: &Asset) -> Result<Asset> {
     if !partners.is_empty() {
         partners::join(&partners, &mut splats, asset.max_error, &Limits::default())?;
     }
-    Ok(Asset { splats, fit: snapped_fit(asset), ..asset.clone() })
+    Ok(Asset { splats, fit: snapped_fit(asset)?, ..asset.clone() })
 }
 
 fn record(quantizer: &Quantizer, splat: &Splat, has_colors: bool) -> Result<Record> {

@@ -123,7 +123,8 @@ pub struct ViewMeasures {
 pub struct Cost {
     /// Bytes of the file.
     pub bytes: u64,
-    /// Bytes of header and table of chunks; with the chunks' coded bytes they make all.
+    /// Bytes of header, of what stands before each chunk, and of the checksum; with the chunks' coded bytes
+    /// they make all.
     pub head_bytes: u64,
     /// The chunks in the order of the file.
     pub chunks: Vec<Chunk>,
