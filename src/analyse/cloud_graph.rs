@@ -53,6 +53,13 @@ pub struct Joined {
     pub margin: f32,
 }
 
+/// Whether points at a distance, with such spacings, are near enough for the surface to go from one
+/// to the other.
+#[must_use]
+pub fn are_near(distance: f32, spacings: [f32; 2]) -> bool {
+    distance <= FAR * spacings[0].min(spacings[1])
+}
+
 impl Sites<'_> {
     /// Whether the surface goes straight from one point to another.
     #[must_use]
@@ -61,7 +68,7 @@ impl Sites<'_> {
         let way = self.positions[b] - self.positions[a];
         let length = way.length();
         let (na, nb) = (self.normals[a], self.normals[b]);
-        let near = length <= FAR * self.spacing[a].min(self.spacing[b]);
+        let near = are_near(length, [self.spacing[a], self.spacing[b]]);
         let slope = way.dot(na).abs().max(way.dot(nb).abs());
         near && na.dot(nb) >= AGREE && slope <= ALONG * length
     }

@@ -1,7 +1,7 @@
 //! Normals of a cloud: the file's where they are sound, else those of the local planes.
 
 use glam::{DMat3, DVec3, Vec3};
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::{Const, Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::distinct::Distinct;
@@ -167,14 +167,30 @@ pub fn plane(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32>
     let Some(spread) = spread(positions, index, others) else {
         return Plane { normal: Vec3::Z, flat: false };
     };
-    let covariance = Matrix3::from_column_slice(&spread.to_cols_array());
-    let eigen = SymmetricEigen::new(covariance);
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let (eigen, order) = eigen(&spread);
     let least = eigen.eigenvectors.column(order[0]);
     let normal = DVec3::new(least[0], least[1], least[2]).normalize_or(DVec3::Z).as_vec3();
     let flat = eigen.eigenvalues[order[0]] < FLAT * eigen.eigenvalues[order[1]];
     Plane { normal: upward(normal), flat }
+}
+
+/// The least variance of a point and others (model units) over the middle one, from 0 where they lie
+/// on a plane or a line to 1 where they lie as in a ball.
+#[must_use]
+pub fn roundness(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + Clone) -> f64 {
+    let Some(spread) = spread(positions, index, others) else { return 0.0 };
+    let (eigen, [least, middle, _]) = eigen(&spread);
+    let [least, middle] = [least, middle].map(|n| eigen.eigenvalues[n]);
+    // Rounding may leave less than nothing of what is nothing.
+    if least > 0.0 { least / middle } else { 0.0 }
+}
+
+/// Eigenvalues and eigenvectors of a symmetric matrix, and their order from the least.
+fn eigen(matrix: &DMat3) -> (SymmetricEigen<f64, Const<3>>, [usize; 3]) {
+    let eigen = SymmetricEigen::new(Matrix3::from_column_slice(&matrix.to_cols_array()));
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    (eigen, order)
 }
 
 /// Of a normal and its opposite, the one whose greatest coordinate is positive: the solver's

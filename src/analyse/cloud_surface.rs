@@ -5,14 +5,14 @@ use glam::DVec3;
 
 use super::cloud_assembly::Assembly;
 use super::cloud_creases::{Sought, found};
-use super::cloud_graph::Sites;
+use super::cloud_graph::{Joined, Sites};
 use super::cloud_normals::{NormalSource, Normals, normals, parted};
 use super::distinct::{Distinct, distinct};
 use super::given_lines::Matched;
 use super::line_cut::LineCut;
 use super::line_network::Network;
 use super::nearest::{Nearest, Search, spacing};
-use super::outliers::outliers;
+use super::outliers::{Strewn, outliers};
 use super::surface::Surface;
 use super::thin::{Reach, Sheet, owners};
 use crate::error::Result;
@@ -40,6 +40,20 @@ pub enum Lines<'a> {
     Found(Sought),
 }
 
+/// A cloud's points, joined to their sheets and told from outliers.
+struct Laid {
+    points: Distinct,
+    normals: Normals,
+    cut: Option<LineCut>,
+    joined: Vec<Joined>,
+    /// Pairs of a point on a line and one of the cloud.
+    joins: Vec<(u32, u32)>,
+    on_line: Vec<bool>,
+    outlier: Vec<bool>,
+    /// Of the lines, those far from the cloud.
+    lost: Vec<u32>,
+}
+
 /// The surface of a cloud, cut along feature lines.
 ///
 /// Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
@@ -55,43 +69,9 @@ pub fn cloud_surface(
     lines: Lines<'_>,
     reach: Option<Reach>,
 ) -> Result<CloudSurface> {
-    let points = distinct(cloud);
-    let search = Search::new(&points.positions)?;
-    let nearest = search.nearest();
-    let spacing = spacing(&points.positions, &nearest);
-    let mut normals = normals(&points, &nearest, source)?;
-    let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
-    let mut network = match lines {
-        Lines::Given(lines) => resampled(lines),
-        Lines::Found(sought) => resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?),
-    };
-    drop(search);
-    let lost = std::mem::take(&mut network.far);
-    let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut normals));
-    let sites = Sites {
-        positions: &points.positions,
-        normals: &normals.normals,
-        spacing: &spacing,
-        nearest: &nearest,
-    };
-    let mut joined = match &cut {
-        Some(cut) => sites.join(&|a, b| cut.parts(&sites, a, b)),
-        None => sites.join(&|_, _| false),
-    };
-    let joins = cut.as_ref().map(|cut| cut.joins(&sites)).unwrap_or_default();
-    let mut on_line = vec![false; joined.len()];
-    for &(_, point) in &joins {
-        on_line[point as usize] = true;
-    }
-    if let Some(cut) = &cut {
-        for (point, joined) in (0_u32..).zip(&mut joined) {
-            joined.margin = joined.margin.max(cut.reach(&sites, point));
-        }
-    }
-    let outlier = outliers(&nearest, &spacing, &joined, &on_line);
-    drop((nearest, spacing));
-    let place = |v: &u32| outlier[points.place[*v as usize] as usize];
-    let left_out = (0..points.place.len() as u32).filter(place).collect();
+    let laid = Laid::of(cloud, source, lines)?;
+    let left_out = laid.left_out();
+    let Laid { points, normals, cut, joined, joins, on_line, outlier, lost } = laid;
     let sheet = Sheet {
         positions: &points.positions,
         normals: &normals.normals,
@@ -107,6 +87,72 @@ pub fn cloud_surface(
         Lines::Given(_) | Lines::Found(_) => None,
     };
     Ok(CloudSurface { surface, left_out, edges, matched })
+}
+
+/// The points of a cloud that belong to no surface, ascending: those that [`cloud_surface`] leaves out.
+///
+/// # Errors
+/// As [`cloud_surface`].
+pub fn cloud_outliers(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<Vec<u32>> {
+    Ok(Laid::of(cloud, source, lines)?.left_out())
+}
+
+impl Laid {
+    fn of(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<Self> {
+        let points = distinct(cloud);
+        let search = Search::new(&points.positions)?;
+        let nearest = search.nearest();
+        let spacing = spacing(&points.positions, &nearest);
+        let mut normals = normals(&points, &nearest, source)?;
+        let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
+        let mut network = match lines {
+            Lines::Given(lines) => resampled(lines),
+            Lines::Found(sought) => {
+                resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?)
+            }
+        };
+        drop(search);
+        let lost = std::mem::take(&mut network.far);
+        let cut =
+            (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut normals));
+        let sites = Sites {
+            positions: &points.positions,
+            normals: &normals.normals,
+            spacing: &spacing,
+            nearest: &nearest,
+        };
+        let joined = joined(&sites, cut.as_ref());
+        let joins = cut.as_ref().map(|cut| cut.joins(&sites)).unwrap_or_default();
+        let mut on_line = vec![false; joined.len()];
+        for &(_, point) in &joins {
+            on_line[point as usize] = true;
+        }
+        let strewn = Strewn {
+            positions: &points.positions,
+            nearest: &nearest,
+            spacing: &spacing,
+            joined: &joined,
+            on_line: &on_line,
+        };
+        let outlier = outliers(&strewn);
+        Ok(Self { points, normals, cut, joined, joins, on_line, outlier, lost })
+    }
+
+    fn left_out(&self) -> Vec<u32> {
+        let place = &self.points.place;
+        let is_outlier = |v: &u32| self.outlier[place[*v as usize] as usize];
+        (0..place.len() as u32).filter(is_outlier).collect()
+    }
+}
+
+/// What each point is joined to, on its own side of the lines.
+fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
+    let Some(cut) = cut else { return sites.join(&|_, _| false) };
+    let mut joined = sites.join(&|a, b| cut.parts(sites, a, b));
+    for (point, joined) in (0_u32..).zip(&mut joined) {
+        joined.margin = joined.margin.max(cut.reach(sites, point));
+    }
+    joined
 }
 
 /// Cuts the cloud along a network; estimated normals beside it are estimated again.
