@@ -2,6 +2,7 @@
 
 pub mod found_lines;
 mod growing;
+pub mod kept;
 pub mod meant;
 pub mod noise;
 pub mod options;
@@ -44,6 +45,7 @@ use crate::sample::scout::Begun;
 use crate::tolerance::COARSEST_CLOSED;
 pub use found_lines::found_lines;
 use growing::Growing;
+pub use kept::{Kept, kept};
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, Holes, MaxError, Meaning, Normals, Options};
@@ -100,7 +102,8 @@ pub struct Baked {
     pub partners: Option<Tally>,
     /// Points of the surface that the splats were fitted to.
     pub samples: usize,
-    /// Points of a cloud, ascending, that belong to no surface: the bound does not hold for them.
+    /// Points of a cloud, ascending, that belong to no surface: outliers, for which the bound does not
+    /// hold.
     pub left_out: Vec<u32>,
     /// Why the colours were left out, if they were.
     pub colors_left_out: Option<&'static str>,
@@ -362,14 +365,8 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             Ok(Analysed { surface, marked: Some(marked), features, ..Analysed::default() })
         }
         Input::Cloud(cloud) => {
-            let given = match meant.edges.as_ref() {
-                Edges::Given(lines) => model_lines(lines, &cloud.frame),
-                Edges::Auto | Edges::None => Vec::new(),
-            };
-            let lines = match meant.edges.as_ref() {
-                Edges::Auto => Lines::Found(sought(cloud, options.edge_angle, max_error)),
-                Edges::Given(_) | Edges::None => Lines::Given(&given),
-            };
+            let given = given_lines(&meant.edges, &cloud.frame);
+            let lines = cloud_lines(cloud, &meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
             let found = cloud_surface(cloud, options.normals.into(), lines, Some(reach))?;
             let features = Found { feature_edges: found.edges, matched: found.matched };
@@ -387,6 +384,28 @@ fn features(mesh: &Mesh, edges: &Edges, edge_angle: f64, max_error: f64) -> Feat
             segments: segments(lines, &mesh.vertices.frame),
             beside: BESIDE * diagonal(&mesh.vertices.positions),
         },
+    }
+}
+
+/// The lines that are given, model units.
+fn given_lines(edges: &Edges, frame: &Frame) -> Vec<Vec<DVec3>> {
+    match edges {
+        Edges::Given(lines) => model_lines(lines, frame),
+        Edges::Auto | Edges::None => Vec::new(),
+    }
+}
+
+/// Where the feature lines of a cloud come from; those that are `given` are its [`given_lines`].
+fn cloud_lines<'a>(
+    cloud: &Cloud,
+    edges: &Edges,
+    given: &'a [Vec<DVec3>],
+    edge_angle: f64,
+    max_error: f64,
+) -> Lines<'a> {
+    match edges {
+        Edges::Auto => Lines::Found(sought(cloud, edge_angle, max_error)),
+        Edges::Given(_) | Edges::None => Lines::Given(given),
     }
 }
 

@@ -503,6 +503,50 @@ fn measure_finds_a_splat_that_is_gone() {
     assert!(pictures.count() > 1);
 }
 
+/// A sphere of a thousand points and so many strays, as a PLY.
+fn strewn(strays: u32) -> String {
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
+        1000 + strays
+    );
+    for n in 0..1000 {
+        let z = 1.0 - (2.0 * f64::from(n) + 1.0) / 1000.0;
+        let (sin, cos) = (2.399_963 * f64::from(n)).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        text += &format!("{} {} {z}\n", across * cos, across * sin);
+    }
+    for n in 0..strays {
+        text += &format!("{} 2 {}\n", 1.5 + 0.01 * f64::from(n), 0.3 * f64::from(n));
+    }
+    text
+}
+
+#[test]
+fn outliers_are_a_class_of_their_own_to_bake_and_measure() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| text(&directory.path().join(name));
+    let (input, file, report) = (path("strewn.ply"), path("strewn.qsplat"), path("report.json"));
+    for (strays, told) in [(3, "3 points that belong"), (1, "1 point that belong"), (0, "")] {
+        fs::write(&input, strewn(strays)).unwrap();
+        let bake = qsplat(&["bake", &input, "-o", &file, "--report", &report]);
+        assert_eq!(code(&bake), 0, "{}", err(&bake));
+        let written: Report = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
+        assert_eq!(written.input.unwrap().outliers, u64::from(strays));
+        let noted = format!("{strays} of {} points are outliers", 1000 + strays);
+        assert_eq!(err(&bake).contains(&noted), strays > 0, "{}", err(&bake));
+        let table = out(&qsplat(&["measure", &file, "--against", &input]));
+        for table in [out(&bake), table] {
+            assert_eq!(table.contains("outliers  "), strays > 0, "{table}");
+            assert!(table.contains(told), "{table}");
+        }
+        let json = ok(&["measure", &file, "--against", &input, "--json"]);
+        let measures: Measures = serde_json::from_str(&json).unwrap();
+        assert_eq!((measures.outliers, measures.uncovered), (u64::from(strays), 0));
+        assert!(measures.fit.max <= measures.budget && measures.forward.max <= measures.budget);
+        assert_eq!(measures.cost.input_points, u64::from(1000 + strays));
+    }
+}
+
 #[test]
 fn measure_refuses_what_does_not_belong_together() {
     let (_, file) = baked();

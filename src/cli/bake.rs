@@ -36,8 +36,9 @@ pub(super) struct Arguments {
     /// What the facets of a mesh stand for, and so what the error bound holds against
     #[arg(long, value_enum, default_value_t)]
     surface: SurfaceArgument,
-    /// Smooths the points of a cloud where they scatter too much for the error bound, which then
-    /// holds against the smoothed points; without it such a cloud is refused
+    /// Smooths the points of a cloud where they scatter by more than a sixth of the error bound, which
+    /// then holds against the smoothed points; without it a cloud is refused that scatters by more than
+    /// a third
     #[arg(long)]
     denoise: bool,
     /// The file to write
@@ -102,7 +103,7 @@ impl From<SurfaceArgument> for Meaning {
 }
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
-enum NormalsArgument {
+pub(super) enum NormalsArgument {
     /// Keep them where they are sound, else estimate
     #[default]
     Auto,
@@ -110,6 +111,16 @@ enum NormalsArgument {
     Keep,
     /// Estimate them from the positions
     Estimate,
+}
+
+impl From<NormalsArgument> for Normals {
+    fn from(argument: NormalsArgument) -> Self {
+        match argument {
+            NormalsArgument::Auto => Self::Auto,
+            NormalsArgument::Keep => Self::Keep,
+            NormalsArgument::Estimate => Self::Estimate,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
@@ -193,6 +204,9 @@ impl Arguments {
         if let Some(note) = self.narrowed_note(&report) {
             notes.note(&note);
         }
+        if let Some(input) = report.input.as_ref().filter(|input| input.outliers > 0) {
+            notes.note(&outliers_note(input));
+        }
         if let Some(input) = report.input.as_ref().filter(|input| !input.lines_lost.is_empty()) {
             notes.note(&lost_note(&self.edges, &input.lines_lost));
         }
@@ -226,11 +240,7 @@ impl Arguments {
             meaning: self.surface.into(),
             denoise: self.denoise,
             effort: self.effort,
-            normals: match self.normals {
-                NormalsArgument::Auto => Normals::Auto,
-                NormalsArgument::Keep => Normals::Keep,
-                NormalsArgument::Estimate => Normals::Estimate,
-            },
+            normals: self.normals.into(),
             colors: match self.color {
                 ColorArgument::Auto => Colors::Auto,
                 ColorArgument::Keep => Colors::Keep,
@@ -272,6 +282,7 @@ impl Arguments {
             triangles: triangles as u64,
             dropped_points: cloud.dropped as u64,
             dropped_triangles: dropped_triangles as u64,
+            outliers: baked.left_out.len() as u64,
             smooth: matches!(baked.made, Made::Smooth(_)),
             noise: baked.noise.map(share),
             moved: match baked.made {
@@ -320,6 +331,14 @@ impl Arguments {
 
 /// By how much a share of the diagonal may change on its way to the model's units and back.
 const ROUNDED: f64 = 1e-6;
+
+fn outliers_note(input: &report::Input) -> String {
+    let report::Input { outliers, points, .. } = input;
+    format!(
+        "{outliers} of {points} points are outliers and were left out: too far from all others, or too few of \
+         them together, to belong to any surface; the bound holds for all others"
+    )
+}
 
 /// Lines named in a note, at most.
 const MOST_NAMED: usize = 8;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use qsplat::bake::{Options, feature_lines, meant};
+use qsplat::bake::{Kept, Options, feature_lines, kept, meant};
 use qsplat::deliver::model;
 use qsplat::error::{Error, Result};
 use qsplat::format;
@@ -44,6 +44,10 @@ pub(super) struct Arguments {
     /// asks for it
     #[arg(long)]
     denoise: bool,
+    /// Whether to trust the normals of a cloud, as in `bake`: which of its points are outliers, left out
+    /// of what is measured, depends on them
+    #[arg(long, value_enum, default_value_t)]
+    normals: bake::NormalsArgument,
     /// JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -51,8 +55,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
     /// Ends in exit code 1 if the greatest fit passes the file's error budget, the greatest
-    /// distance backward passes two budgets, a pixel is missing or extra in any view, or a point of
-    /// a mesh is not covered
+    /// distance backward passes two budgets, a pixel is missing or extra in any view, or a point that
+    /// is no outlier is not covered
     #[arg(long)]
     check: bool,
     /// What draws for the time of a frame, besides the CPU reference, which draws everything that
@@ -79,8 +83,10 @@ impl Arguments {
         let lines = feature_lines(&meant.input, &meant.edges, self.edge_angle, max_error)?;
         let lines = lines.as_ref().map(|lines| align::lines(lines, &frame, &asset.frame));
         progress.stage("reference");
-        let aligned = align::bring(model(&meant.input), &asset);
+        let Kept { input: kept, outliers } = kept(&meant.input, &meant.edges, &options, max_error)?;
+        let aligned = align::bring(model(&kept), &asset);
         let reference = Reference::standing_for(aligned.model(), asset.diagonal)?;
+        let reference = Reference { outliers, ..reference };
         let subject = Subject { bytes: &bytes, asset: &asset, against: &reference, lines: lines.as_deref() };
         let mut measures = measure::measure_telling(&subject, &mut |stage| progress.stage(stage))?;
         drop(progress);
@@ -100,6 +106,7 @@ impl Arguments {
             edge_angle: self.edge_angle,
             meaning: self.surface.into(),
             denoise: self.denoise,
+            normals: self.normals.into(),
             ..Options::default()
         })
     }

@@ -25,10 +25,12 @@ pub struct Measures {
     pub kind: String,
     /// The bound the file states.
     pub budget: f64,
+    /// Points of a cloud that belong to no surface: no other measure knows of them.
+    #[serde(default)]
+    pub outliers: u64,
     /// From each input point along the splat's normal to the quadric of a splat that covers it.
     pub fit: Distances,
-    /// Input points that no splat covers. The bake leaves points of a cloud out that belong to no
-    /// surface, and covers every other.
+    /// Input points, outliers aside, that no splat covers. The bake covers every one.
     pub uncovered: u64,
     /// From samples of the input's surface to the union of the clipped splats.
     pub forward: Distances,
@@ -206,8 +208,8 @@ impl Measures {
                 faults.push(format!("{pixels} pixels are {name}"));
             }
         }
-        if self.kind == MESH && self.uncovered > 0 {
-            faults.push(format!("{} points of the mesh are not covered", self.uncovered));
+        if self.uncovered > 0 {
+            faults.push(format!("{} points of the {} are not covered", self.uncovered, self.kind));
         }
         faults
     }

@@ -81,7 +81,8 @@ pub fn measure_telling(subject: &Subject<'_>, tell: &mut dyn FnMut(&'static str)
     tell("reference");
     let lines = subject.lines.map(|lines| align::lines(lines, frames[0], frames[1]));
     let aligned = align::bring(model, subject.asset);
-    let reference = Reference::standing_for(aligned.model(), subject.asset.diagonal)?;
+    let again = Reference::standing_for(aligned.model(), subject.asset.diagonal)?;
+    let reference = Reference { outliers: subject.against.outliers, ..again };
     against(&reference, subject, lines.as_deref(), tell)
 }
 
@@ -102,8 +103,9 @@ fn against(
     tell("views");
     let seen = seen::seen(asset, &reference.drawn)?;
     tell("cost");
-    let model = reference.model;
-    let cost = cost::cost(subject.bytes, asset, model.cloud().positions.len(), reference.views())?;
+    let (model, outliers) = (reference.model, reference.outliers);
+    let read = model.cloud().positions.len() + outliers;
+    let cost = cost::cost(subject.bytes, asset, read, reference.views())?;
     // An asset of one point has no diagonal: its errors are zero, not infinite.
     let share = |length: f64| if asset.diagonal > 0.0 { length / asset.diagonal } else { 0.0 };
     let accuracy = Distances { rms: fit.accuracy.rms, p99: fit.accuracy.p99, max: fit.accuracy.max };
@@ -113,6 +115,7 @@ fn against(
         diagonal: asset.diagonal * asset.frame.scale(),
         kind: if matches!(model, Model::Mesh(_)) { MESH } else { CLOUD }.into(),
         budget: share(asset.max_error),
+        outliers: outliers as u64,
         fit: shares(accuracy),
         uncovered: fit.uncovered as u64,
         forward: shares(surface.forward),

@@ -18,6 +18,8 @@ pub struct Reference<'a> {
     pub model: Model<'a>,
     /// Of the input's bounding box, in the model's units: by it a file is known to belong to it.
     pub diagonal: f64,
+    /// Points of a cloud that belong to no surface: outliers, which the model does without.
+    pub outliers: usize,
     /// The points of [`fit::points`].
     pub points: Vec<Vec3>,
     /// Its surface.
@@ -36,7 +38,7 @@ impl<'a> Reference<'a> {
     }
 
     /// As [`Self::new`], of a surface that stands for an input with a bounding box of this diagonal,
-    /// in the surface's units.
+    /// in the surface's units. What it says of outliers, none, is for whoever left some out to set right.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -45,7 +47,7 @@ impl<'a> Reference<'a> {
         let input = Prepared::new(model, &Style::default());
         let views = views::views(model);
         let drawn = views.into_par_iter().map(|view| Drawn::new(&input, view)).collect::<Result<_>>()?;
-        Ok(Self { model, diagonal, points: fit::points(model, &[]), surface, drawn })
+        Ok(Self { model, diagonal, outliers: 0, points: fit::points(model, &[]), surface, drawn })
     }
 
     /// The views.

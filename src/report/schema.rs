@@ -25,6 +25,9 @@ pub struct Input {
     pub dropped_points: u64,
     /// Triangles left out because they are degenerate or used a dropped point.
     pub dropped_triangles: u64,
+    /// Points of a cloud that belong to no surface and were left out: the bound does not hold for them.
+    #[serde(default)]
+    pub outliers: u64,
     /// Whether a mesh's facets were taken for a smooth surface: the errors are then those against it.
     pub smooth: bool,
     /// Standard deviation of a cloud's points from their surface, a fraction of the diagonal; `None`
@@ -245,7 +248,7 @@ pub struct Accuracy {
     pub within_budget: bool,
 }
 
-/// Distances of the input's points to the splats that cover them.
+/// Distances of the input's points, outliers aside, to the splats that cover them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// Root mean square.

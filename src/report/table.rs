@@ -32,6 +32,12 @@ impl Report {
             let triangles =
                 if input.triangles > 0 { format!(", {} triangles", input.triangles) } else { String::new() };
             text.row("input", format!("{} ({}, {} points{triangles})", input.path, input.kind, input.points));
+            if input.outliers > 0 {
+                text.row(
+                    "outliers",
+                    format!("{} that belong to no surface were left out", points(input.outliers)),
+                );
+            }
             if input.smooth {
                 text.row("surface", "smooth, through the vertices: errors are those against it");
             }
@@ -63,6 +69,11 @@ impl Report {
             format!("around ({x:.6}, {y:.6}, {z:.6}), diagonal {:.6} input units", model.diagonal),
         );
     }
+}
+
+/// How many points.
+pub(super) fn points(count: u64) -> String {
+    if count == 1 { "1 point".into() } else { format!("{count} points") }
 }
 
 /// Text in two columns.

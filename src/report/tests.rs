@@ -54,6 +54,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         triangles: 96,
         dropped_points: 1,
         dropped_triangles: 2,
+        outliers: 3,
         smooth: false,
         noise: Some(1e-5),
         moved: Some(Moved { rms: 1e-5, max: 5e-5 }),
@@ -177,6 +178,7 @@ fn the_table_names_what_matters() {
         "norm 12",
         "sample",
         "kept",
+        "outliers      3 points that belong to no surface were left out",
     ] {
         assert!(table.contains(part), "{part} is missing in\n{table}");
     }

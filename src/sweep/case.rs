@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
-use crate::bake::{Edges, Options, Silent, feature_lines};
+use crate::bake::{Edges, Kept, Options, Silent, feature_lines, kept, model_error};
 use crate::deliver::{deliver, model};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
@@ -35,11 +35,26 @@ pub(super) struct Subject<'a> {
     pub(super) camera: Camera,
 }
 
+/// An input without the outliers of a cloud, which every case leaves out. Which points they are hardly
+/// depends on the bound: that of a bake at defaults stands for all.
+///
+/// # Errors
+/// Those of [`kept`], and of [`model_error`] for a cloud.
+pub(super) fn without_outliers<'a>(input: &'a Input, edges: &Edges) -> Result<Kept<'a>> {
+    let options = Options::default();
+    let max_error = match input {
+        Input::Mesh(_) => 0.0,
+        Input::Cloud(_) => model_error(&options, input)?,
+    };
+    kept(input, edges, &options, max_error)
+}
+
 impl<'a> Subject<'a> {
     /// # Errors
     /// As [`Reference::new`].
-    pub(super) fn new(input: &'a Input, edges: Edges) -> Result<Self> {
-        let reference = Reference::new(model(input))?;
+    pub(super) fn new(input: &'a Input, kept: &'a Kept<'a>, edges: Edges) -> Result<Self> {
+        let whole = Reference::standing_for(model(&kept.input), model(input).diagonal())?;
+        let reference = Reference { outliers: kept.outliers, ..whole };
         let view = reference.views().find(|view| view.name == PICTURE_VIEW);
         let iso = || iso(&input.cloud().frame, reference.model.diagonal(), PICTURE_SIZE);
         let camera = view.map_or_else(iso, |view| view.camera);

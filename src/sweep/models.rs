@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::Event;
 use super::axis::{mark_fronts, slopes};
-use super::case::{self, Pictures, Subject};
+use super::case::{self, Pictures, Subject, without_outliers};
 use super::pictures::Shown;
 use super::plan::{Lines, Plan, Setting};
 use super::schema::{Case, Model};
@@ -21,10 +21,13 @@ pub(super) fn sweep(path: &Path, plan: &Plan, watch: &mut dyn FnMut(&Event<'_>))
     let start = Instant::now();
     let read = read(path, plan);
     model.read_seconds = start.elapsed().as_secs_f64();
-    let subject = read
-        .as_ref()
-        .map_err(ToString::to_string)
-        .and_then(|(input, edges)| Subject::new(input, edges.clone()).map_err(|error| error.to_string()));
+    let kept = read.as_ref().map_err(ToString::to_string).and_then(|(input, edges)| {
+        let kept = without_outliers(input, edges).map_err(|error| error.to_string())?;
+        Ok((input, kept, edges))
+    });
+    let subject = kept.as_ref().map_err(Clone::clone).and_then(|(input, kept, edges)| {
+        Subject::new(input, kept, Edges::clone(edges)).map_err(|error| error.to_string())
+    });
     let subject = match subject {
         Ok(subject) => subject,
         Err(failure) => {

@@ -26,6 +26,7 @@ fn outcome(budget: f64, splats: f64) -> Outcome {
         diagonal: 3.0,
         kind: "mesh".into(),
         budget,
+        outliers: 0,
         fit: distances(0.9 * budget),
         uncovered: 0,
         forward: distances(budget),

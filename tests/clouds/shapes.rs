@@ -2,10 +2,11 @@
 
 use glam::{DVec3, Vec3};
 use qsplat::bake::Silent;
-use qsplat::bake::{MaxError, Normals};
-use qsplat::deliver::deliver;
+use qsplat::bake::{MaxError, Normals, kept, meant};
+use qsplat::deliver::{deliver, model};
 use qsplat::error::Error;
 use qsplat::ingest::Input;
+use qsplat::measure::{Reference, Subject, measure};
 
 use super::scene::{Draw, bake, bare, cloud, options, surface};
 
@@ -137,4 +138,36 @@ fn outliers_are_left_out_and_told() {
     places.extend(&strays);
     let made = bake(&cloud(&places, &[]), &options(MaxError::Relative(5e-4)));
     assert_eq!(made.baked.left_out, (count..count + 40).collect::<Vec<_>>());
+}
+
+#[test]
+fn what_is_measured_leaves_out_what_the_bake_did_and_keeps_the_bound() {
+    let mut draw = Draw(10);
+    let mut places = sphere(6000, 11);
+    // One in twenty of all, anywhere in the box: some within a few spacings of the sphere.
+    places.extend((0..300).map(|_| 1.5 * DVec3::new(draw.both(), draw.both(), draw.both())));
+    // Strays side by side.
+    places.extend((0..3).map(|n| DVec3::new(1.4, 1.4, 1.4 + 0.02 * f64::from(n))));
+    draw.shuffle(&mut places);
+    let options = options(MaxError::Relative(1e-3));
+    let input = Input::Cloud(cloud(&places, &[]));
+    let made = deliver(&input, &options, &mut Silent).unwrap();
+    let max_error = made.asset.max_error;
+    let meant = meant(&input, &options, max_error).unwrap();
+    let kept = kept(&meant.input, &meant.edges, &options, max_error).unwrap();
+    assert_eq!(kept.outliers, made.baked.left_out.len());
+    assert_eq!(kept.input.cloud().positions, input.cloud().without(&made.baked.left_out).positions);
+    for &stray in &made.baked.left_out {
+        let place = input.cloud().frame.to_input(input.cloud().positions[stray as usize].as_dvec3());
+        assert!((place.length() - 1.0).abs() > 0.02, "{place}");
+    }
+    let far = |p: &Vec3| (input.cloud().frame.to_input(p.as_dvec3()).length() - 1.0).abs() > 0.25;
+    assert_eq!(kept.input.cloud().positions.iter().filter(|p| far(p)).count(), 0, "five spacings off");
+    let reference = Reference::standing_for(model(&kept.input), made.asset.diagonal).unwrap();
+    let reference = Reference { outliers: kept.outliers, ..reference };
+    let subject = Subject { bytes: &made.bytes, asset: &made.asset, against: &reference, lines: None };
+    let measures = measure(&subject).unwrap();
+    assert_eq!((measures.outliers, measures.uncovered), (kept.outliers as u64, 0));
+    assert_eq!(measures.cost.input_points, places.len() as u64, "as read");
+    assert!(measures.fit.max <= measures.budget && measures.forward.max <= measures.budget, "{measures:?}");
 }

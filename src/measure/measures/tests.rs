@@ -11,6 +11,7 @@ fn sound() -> Measures {
         diagonal: 3.0,
         kind: MESH.into(),
         budget: 1e-3,
+        outliers: 0,
         fit: distances,
         uncovered: 0,
         forward: distances,
@@ -59,6 +60,8 @@ fn each_broken_promise_is_one_fault() {
         assert!(faults.len() == 1 && faults[0].contains(part), "{part}: {faults:?}");
     }
     let mut cloud = sound();
-    (cloud.kind, cloud.uncovered) = (CLOUD.into(), 3);
+    (cloud.kind, cloud.outliers) = (CLOUD.into(), 3);
     assert_eq!(cloud.faults(), Vec::<String>::new(), "a cloud may have outliers");
+    cloud.uncovered = 1;
+    assert!(cloud.faults()[0].contains("of the cloud are not covered"), "{:?}", cloud.faults());
 }

@@ -2,7 +2,7 @@
 
 mod page;
 
-use super::table::Table;
+use super::table::{Table, points};
 use crate::measure::Measures;
 use crate::measure::measures::Distances;
 pub use page::write_page;
@@ -15,6 +15,9 @@ pub fn table(measures: &Measures) -> String {
         "budget",
         format!("{:.3e} of the diagonal of {:.6} input units", measures.budget, measures.diagonal),
     );
+    if measures.outliers > 0 {
+        text.row("outliers", format!("{} that belong to no surface left out", points(measures.outliers)));
+    }
     errors(&mut text, measures);
     pictures(&mut text, measures);
     cost(&mut text, measures);
