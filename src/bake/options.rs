@@ -141,8 +141,9 @@ pub struct Options {
     pub edge_angle: f64,
     /// What a mesh's facets stand for.
     pub meaning: Meaning,
-    /// Whether a cloud's points are smoothed where they scatter too much for the error bound: it then
-    /// holds against the smoothed points. Otherwise such a cloud is refused.
+    /// Whether a cloud's points are smoothed where they scatter by more than a sixth of the error bound:
+    /// it then holds against the smoothed points. Otherwise a cloud that scatters by more than a third is
+    /// refused.
     pub denoise: bool,
     /// 1 (fastest) to 9 (fewest bytes).
     pub effort: u8,

@@ -30,6 +30,12 @@ pub fn least_bound(noise: f64) -> f64 {
     0.5 * noise / QUIET * (LEVERAGE / SMOOTHED_WITH[1] as f64).sqrt()
 }
 
+/// Whether points scatter by more than smoothed ones are to, under an error bound (model units).
+#[must_use]
+pub fn is_noisy(noise: f64, max_error: f64) -> bool {
+    noise > QUIET * max_error
+}
+
 /// A cloud whose points are moved onto the quadrics fitted to the points around them.
 #[derive(Clone, Debug)]
 pub struct Quieted {

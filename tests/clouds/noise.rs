@@ -11,7 +11,7 @@ use super::scene::{Draw, bake, cloud, options};
 /// Standard deviation of the points, a fraction of the sphere's radius.
 const NOISE: f64 = 5e-3;
 
-/// An error bound below twice the noise, in radii.
+/// An error bound below three times the noise, in radii.
 const BOUND: f64 = 6e-3;
 
 /// Places that scatter about the unit sphere.
