@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use super::noise::noise;
 use super::options::{Edges, Meaning, Options};
-use super::quiet::{Quieted, is_noisy, least_bound, quieted};
+use super::quiet::{Quieted, is_loud, is_noisy, least_bound, quieted};
 use super::{MOST_PIECES, diagonal, features, piece_length};
 use crate::analyse::mesh_surface::Found;
 use crate::analyse::smooth::Fineness;
@@ -26,8 +26,8 @@ const NOTICEABLE: f64 = 0.25;
 
 /// An error bound of less than this many standard deviations of a cloud's noise is refused. Of points
 /// that scatter normally one in 370 strays farther, and takes a splat of its own. A cloud of a million
-/// on a smooth surface takes 770 splats at a bound of four, 1,900 at three, 6,200 at two and a half, and
-/// 40,000 at two, where one point in 22 strays: these are splats for noise.
+/// on a smooth surface takes 770 splats at a bound of four, 1,900 at three and 6,200 at two and a half:
+/// these are splats for noise.
 const LEAST_BOUND: f64 = 3.0;
 
 /// What a least bound is told larger by, so that its four digits are enough.
@@ -67,6 +67,8 @@ pub struct Quiet {
     pub moved_rms: f64,
     /// The longest.
     pub moved_max: f64,
+    /// Standard deviation of the smoothed points from their surface; `None` where they show none.
+    pub left: Option<f64>,
 }
 
 /// What a bake of an input with these options bakes; `max_error` is its bound in model units.
@@ -131,22 +133,32 @@ fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error
         |noise: &f64| options.denoise && max_error >= least_bound(*noise) && is_noisy(*noise, max_error);
     let Some(noise) = noise.filter(wanted) else { return Ok(itself) };
     let Quieted { cloud, moved_rms, moved_max } = quieted(cloud, noise, max_error)?;
-    let made = Made::Quiet(Quiet { moved_rms, moved_max });
+    let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&cloud.positions) });
     Ok(Meant { input: Cow::Owned(Input::Cloud(cloud)), made, ..itself })
 }
 
-/// Refuses a cloud whose noise an error bound (model units) is below.
+/// Refuses a cloud whose noise, or what smoothing leaves of it, an error bound (model units) is below.
 ///
 /// # Errors
 /// [`Error::Usage`] with the least bound that is not, in input units.
 pub fn check_noise(meant: &Meant<'_>, denoise: bool, max_error: f64) -> Result<()> {
     let Some(noise) = meant.noise else { return Ok(()) };
-    let least = if denoise { least_bound(noise) } else { LEAST_BOUND * noise };
+    let plain = LEAST_BOUND * noise;
+    let loud = match &meant.made {
+        Made::Quiet(quiet) => max_error < plain && is_loud(quiet.left, max_error),
+        Made::Itself | Made::Smooth(_) => false,
+    };
+    // A bound that takes no smoothing, where that does not help.
+    let least = if denoise && !loud { least_bound(noise) } else { plain };
     if max_error >= least {
         return Ok(());
     }
     let scale = meant.input.cloud().frame.scale();
-    let remedy = if denoise { "" } else { ", or --denoise to smooth them" };
+    let remedy = match (denoise, loud) {
+        (false, _) => ", or --denoise to smooth them",
+        (true, false) => "",
+        (true, true) => ": these do not smooth to a surface",
+    };
     Err(Error::Usage(format!(
         "the points scatter about their surface by {:.3e} (standard deviation, input units), too much for an \
          error bound of {:.3e}: give a --max-error of {:.3e} or more{remedy}",

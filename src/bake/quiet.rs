@@ -16,6 +16,9 @@ const LEVERAGE: f64 = 4.0;
 /// Smoothed points scatter by this share of the error bound.
 const QUIET: f64 = 1.0 / 6.0;
 
+/// What smoothed points may scatter by, at most, as a share of what they are to.
+const LOUDEST: f64 = 1.5;
+
 /// The fewest and the most points that one is smoothed with.
 const SMOOTHED_WITH: [usize; 2] = [32, 768];
 
@@ -26,14 +29,24 @@ const FARTHEST: f64 = 6.0;
 /// The least error bound, model units, for which a cloud of this noise can be smoothed.
 #[must_use]
 pub fn least_bound(noise: f64) -> f64 {
-    // There the most points smooth to twice the scatter that is aimed at.
-    0.5 * noise / QUIET * (LEVERAGE / SMOOTHED_WITH[1] as f64).sqrt()
+    // There the most points smooth to no more than smoothed points may scatter by.
+    noise / (LOUDEST * QUIET) * (LEVERAGE / SMOOTHED_WITH[1] as f64).sqrt()
 }
 
 /// Whether points scatter by more than smoothed ones are to, under an error bound (model units).
 #[must_use]
 pub fn is_noisy(noise: f64, max_error: f64) -> bool {
     noise > QUIET * max_error
+}
+
+/// Whether smoothed points still scatter by too much for an error bound (model units); `left` is the noise
+/// of theirs, `None` where they show no surface.
+///
+/// Not all that passes for noise is: points strewn through space, as the leaves of trees are, have no
+/// surface in their midst, and quadrics fitted to those around one and to those around the next differ.
+#[must_use]
+pub fn is_loud(left: Option<f64>, max_error: f64) -> bool {
+    left.is_none_or(|left| left > LOUDEST * QUIET * max_error)
 }
 
 /// A cloud whose points are moved onto the quadrics fitted to the points around them.

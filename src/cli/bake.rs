@@ -286,7 +286,7 @@ impl Arguments {
             smooth: matches!(baked.made, Made::Smooth(_)),
             noise: baked.noise.map(share),
             moved: match baked.made {
-                Made::Quiet(Quiet { moved_rms, moved_max }) => {
+                Made::Quiet(Quiet { moved_rms, moved_max, .. }) => {
                     Some(report::Moved { rms: share(moved_rms), max: share(moved_max) })
                 }
                 Made::Itself | Made::Smooth(_) => None,

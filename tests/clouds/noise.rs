@@ -72,3 +72,28 @@ fn what_no_smoothing_helps_is_refused_too() {
     let Err(Error::Usage(text)) = refused else { panic!("not refused: {refused:?}") };
     assert!(text.contains("--max-error") && !text.contains("--denoise"), "{text}");
 }
+
+#[test]
+fn a_bound_above_the_noise_that_bumps_would_show_at_is_smoothed_as_asked() {
+    let cloud = cloud(&noisy_sphere(20_000), &[]);
+    let bound = options(MaxError::Absolute(4.0 * NOISE));
+    let plain = bake(&cloud, &bound);
+    let smoothed = bake(&cloud, &Options { denoise: true, ..bound });
+    assert_eq!(plain.baked.made, Made::Itself);
+    let Made::Quiet(quiet) = smoothed.baked.made else { panic!("not smoothed") };
+    assert!(quiet.left.unwrap() < 0.25 * smoothed.asset.max_error, "{quiet:?}");
+    assert!(smoothed.bytes.len() <= plain.bytes.len(), "{} {}", smoothed.bytes.len(), plain.bytes.len());
+}
+
+#[test]
+fn points_strewn_through_space_are_no_noise_that_can_be_smoothed() {
+    // Half of the points on the ground, half anywhere above it, as in a wood.
+    let mut draw = Draw(78);
+    let mut height = || if draw.one() < 0.5 { 0.0 } else { 0.2 * draw.one() };
+    let heights: Vec<f64> = (0..8000).map(|_| height()).collect();
+    let wood: Vec<DVec3> = heights.into_iter().map(|z| DVec3::new(draw.both(), draw.both(), z)).collect();
+    let options = Options { denoise: true, ..options(MaxError::Relative(5e-3)) };
+    let refused = deliver(&Input::Cloud(cloud(&wood, &[])), &options, &mut Silent);
+    let Err(Error::Usage(text)) = refused else { panic!("not refused") };
+    assert!(text.contains("--max-error") && text.contains("do not smooth to a surface"), "{text}");
+}
