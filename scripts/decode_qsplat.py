@@ -303,7 +303,12 @@ class Grids:
         return next((bits for bits in range(1, 41) if 2.0**bits >= wanted), 40)
 
     def border_steps(self, large):
-        return max(math.ceil(radius(large) * 4.442883 * 1024.0 / self.steps["clip"]), 4)
+        finest = radius(large) * 4.442883 * 1024.0 / self.steps["clip"]
+        return max(math.ceil(finest / 16.0), 1) * 16
+
+    def border(self, n, sizes):
+        s, c = sin_cos(n, self.border_steps(sizes[0]))
+        return [radius(sizes[0]) * self.E * c, radius(sizes[1]) * self.E * s]
 
     def coordinate(self, cell, low, bits):
         return ((cell - BIAS) + low * 2.0**-bits) * self.cell
@@ -349,24 +354,228 @@ def spin_guess(near, k, bits):
     return low
 
 
-def read_clip(tape, grids, sizes, radii, curved):
+# Section 6.5: clip curves ---------------------------------------------------------------------
+
+
+def chord_frame(p1, p3):
+    chord = [p3[0] - p1[0], p3[1] - p1[1]]
+    length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
+    along = [chord[0] / length, chord[1] / length]
+    return along, [-along[1], along[0]]
+
+
+def moved_right(arms, by):
+    sides = []
+    for p, q in zip(arms, arms[1:]):
+        d = [q[0] - p[0], q[1] - p[1]]
+        length = math.sqrt(d[0] * d[0] + d[1] * d[1])
+        if not length > 0.0:
+            return None
+        sides.append([d[1] / length, -(d[0] / length)])
+    one, three = sides
+    share = 1.0 + (one[0] * three[0] + one[1] * three[1])
+    if not share > 0.05:
+        return None
+    mitre = by / share
+    p1, p2, p3 = arms
+    return [
+        [p1[n] + by * one[n] for n in range(2)],
+        [p2[n] + mitre * (one[n] + three[n]) for n in range(2)],
+        [p3[n] + by * three[n] for n in range(2)],
+    ]
+
+
+def lifted(splat, arms):
+    (a, b), p2 = splat["curvature"], arms[1]
+
+    def height(p):
+        return a * p[0] * p[0] + b * p[1] * p[1]
+
+    def tangent(p):
+        return height(p) + 2.0 * a * p[0] * (p2[0] - p[0]) + 2.0 * b * p[1] * (p2[1] - p[1])
+
+    heights = [height(arms[0]), 0.5 * (tangent(arms[0]) + tangent(arms[2])), height(arms[2])]
+    axes = list(zip(splat["center"], splat["i"], splat["j"], splat["k"]))
+    return [[c + p[0] * i + p[1] * j + w * k for c, i, j, k in axes] for p, w in zip(arms, heights)]
+
+
+def lead_of(splat, conic, budget):
+    arms = conic[:3]
+    line = moved_right(arms, -(0.5 * budget))
+    rho = 0.5 if conic[3] == 0.0 else conic[3]
+    return {"own": lifted(splat, arms), "line": lifted(splat, line) if line else None, "rho": rho}
+
+
+def distance(lead, place):
+    chord = [q - p for p, q in zip(lead["own"][0], lead["own"][2])]
+    off = [q - p for p, q in zip(lead["own"][0], place)]
+    length, along = dot(chord, chord), dot(off, chord)
+    share = min(along / length, 1.0) if along > 0.0 and length > 0.0 else 0.0
+    d = [o - share * c for o, c in zip(off, chord)]
+    return dot(d, d)
+
+
+def crossings(a, b, radii):
+    p, d = [a[n] / radii[n] for n in range(2)], [(b[n] - a[n]) / radii[n] for n in range(2)]
+    square, half = d[0] * d[0] + d[1] * d[1], p[0] * d[0] + p[1] * d[1]
+    rest = p[0] * p[0] + p[1] * p[1] - 1.0
+    root = half * half - square * rest
+    if not (root > 0.0 and square > 0.0):
+        return None
+    return (-half - math.sqrt(root)) / square, (-half + math.sqrt(root)) / square
+
+
+def blossom(curve, s, t):
+    a, b, c = (1.0 - s) * (1.0 - t), s * (1.0 - t) + t * (1.0 - s), s * t
+    return [a * p + b * q + c * r for p, q, r in zip(*curve)]
+
+
+def reach(curve, t, radii):
+    point = blossom(curve, t, t)
+    if not point[2] > 0.0:
+        return math.inf
+    x, y = point[0] / point[2] / radii[0], point[1] / point[2] / radii[1]
+    return x * x + y * y
+
+
+def span_inside(curve, radii):
+    places = [-1.0 + 3.0 * n / 24.0 for n in range(25)]
+    reaches = [reach(curve, t, radii) for t in places]
+    inmost = min(range(25), key=lambda n: (reaches[n], n))
+    before = next((n for n in range(inmost - 1, -1, -1) if reaches[n] > 1.0), None)
+    after = next((n for n in range(inmost + 1, 25) if reaches[n] > 1.0), None)
+    if reaches[inmost] > 1.0 or before is None or after is None:
+        return None
+    found = []
+    for inside, outside in [(places[before + 1], places[before]), (places[after - 1], places[after])]:
+        for _ in range(24):
+            middle = 0.5 * (inside + outside)
+            inside, outside = (inside, middle) if reach(curve, middle, radii) > 1.0 else (middle, outside)
+        found.append(inside)
+    return found
+
+
+def crossing(lead, splat, form, across, budget):
+    """The curve P1, P2, P3, rho that a lead is in the plane of a splat, from border to border."""
+    arms, radii = lead["line"] if across else lead["own"], splat["radii"]
+    if arms is None:
+        return None
+    arms = [[dot([a - b for a, b in zip(p, splat["center"])], splat[axis]) for axis in "ij"] for p in arms]
+    if form == "straight":
+        arms[1] = [0.5 * (p + q) for p, q in zip(arms[0], arms[2])]
+    if across:
+        arms = moved_right(arms[::-1], 0.5 * budget)
+        if arms is None:
+            return None
+    p1, p2, p3 = arms
+
+    def on(p, q, t):
+        return [a + t * (b - a) for a, b in zip(p, q)]
+
+    if form == "straight":
+        t = crossings(p1, p3, radii)
+        if t is None:
+            return None
+        p1, p3 = on(p1, p3, t[0]), on(p1, p3, t[1])
+        return [p1, [0.5 * (a + b) for a, b in zip(p1, p3)], p3, 0.0]
+    if form == "corner":
+        ways = [crossings(p2, p1, radii), crossings(p2, p3, radii)]
+        if lead["rho"] < 1.0 or any(t is None or not t[0] < 0.0 for t in ways):
+            return None
+        return [on(p2, p1, ways[0][1]), p2, on(p2, p3, ways[1][1]), 1.0]
+    if not lead["rho"] < 1.0:
+        return None
+    weights = [1.0 - lead["rho"], lead["rho"], 1.0 - lead["rho"]]
+    curve = [[p[0] * w, p[1] * w, w] for p, w in zip(arms, weights)]
+    span = span_inside(curve, radii)
+    if span is None:
+        return None
+    a, b, c = blossom(curve, span[0], span[0]), blossom(curve, *span), blossom(curve, span[1], span[1])
+    if not (a[2] > 0.0 and b[2] > 0.0 and c[2] > 0.0):
+        return None
+    weight = b[2] / math.sqrt(a[2] * c[2])
+    return [[p[0] / p[2], p[1] / p[2]] for p in [a, b, c]] + [weight / (1.0 + weight)]
+
+
+def border_step(point, grids, sizes):
     count = grids.border_steps(sizes[0])
-    start = tape.number("Ends")
-    sweep = tape.number("Ends") + 1
-    require(start < count and sweep < count, "an end beyond a whole turn")
-    ends = []
-    for n in [start, (start + sweep) % count]:
+    x, y = point[0] / (radius(sizes[0]) * grids.E), point[1] / (radius(sizes[1]) * grids.E)
+    x, y, first = (-x, -y, count // 2) if y < 0.0 else (x, y, 0)
+
+    def passed(n, count):
         s, c = sin_cos(n, count)
-        ends.append([radii[0] * c, radii[1] * s])
-    clip = {"alpha1": central(ends[0]), "alpha3": central(ends[1]), "p2": [0.0, 0.0], "rho": 0.0}
+        return c * y - s * x >= 0.0
+
+    low, high = 0, count // 2
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if passed(middle, count) else (low, middle)
+    return (first + low + passed(2 * low + 1, 2 * count)) % count
+
+
+def read_clip(tape, grids, splat, curved, leads):
+    form = "straight"
     if curved:
-        control = [tape.near("Ctrl", 0, 1 << 40) for _ in range(2)]
-        steps = abs(control[0]) + abs(control[1])
-        rho = tape.number("Rho") + 1
-        require(0 < steps and rho <= steps, "a control point on the chord, or rho above 1")
-        clip["p2"] = [0.5 * (a + b) + n * grids.clip for a, b, n in zip(ends[0], ends[1], control)]
-        clip["rho"] = rho / steps
-    return clip
+        corner = tape.number("Corner")
+        require(corner <= 1, "a form that does not exist")
+        form = "corner" if corner else "curved"
+    side = tape.number("Lead")
+    require(side <= 2, "a side that does not exist")
+    guess = None
+    if side:
+        rank = tape.number("Rank")
+        found = (crossing(lead, splat, form, side == 2, grids.E) for lead in leads)
+        guess = next((c for n, c in enumerate(c for c in found if c is not None) if n == rank), None)
+        require(guess is not None, "a rank beyond the curves that cross")
+    grain = tape.number("Grain")
+    require(grain <= 4, "grain")
+    unit, sizes = 2 ** (4 - grain), splat["sizes"]
+    count = grids.border_steps(sizes[0])
+    near, rho_near = [0, 0], None
+    if side:
+        steps = [border_step(p, grids, sizes) for p in [guess[0], guess[2]]]
+        start, end = [(n + unit * tape.near("Off", 0, 1 << 50)) % count for n in steps]
+        along, across = chord_frame(guess[0], guess[2])
+        arm = [p - 0.5 * (a + b) for a, p, b in zip(*guess[:3])]
+        near = [(arm[0] * v[0] + arm[1] * v[1]) / grids.clip + 0.5 for v in [along, across]]
+        require(all(map(math.isfinite, near)) and guess[3] <= 1.0, "a guess out of range")
+        near = [math.floor(n) for n in near]
+        require(max(map(abs, near)) <= 1 << 40, "a guess out of range")
+    else:
+        start, sweep = unit * tape.number("Ends"), unit * (tape.number("Ends") + 1)
+        require(start < count and sweep < count, "an end beyond a whole turn")
+        end = (start + sweep) % count
+    require(start != end, "a curve that spans nothing")
+    p1, p3 = grids.border(start, sizes), grids.border(end, sizes)
+    middle = [0.5 * (a + b) for a, b in zip(p1, p3)]
+    if form == "straight":
+        return [p1, middle, p3, 0.0]
+    field = "Off" if side else "Ctrl"
+    control = [n + unit * tape.near(field, 0, 1 << 50) for n in near]
+    steps = abs(control[0]) + abs(control[1])
+    require(steps > 0 and max(map(abs, control)) <= 1 << 40, "a control point on the chord, or out of range")
+    along, across = chord_frame(p1, p3)
+    x, y = float(control[0]), float(control[1])
+    p2 = [m + (x * a + y * b) * grids.clip for m, a, b in zip(middle, along, across)]
+    if form == "corner":
+        return [p1, p2, p3, 1.0]
+    if side:
+        rho = guess[3]
+    else:
+        chord = [b - a for a, b in zip(p1, p3)]
+        half, height = 0.5 * math.sqrt(chord[0] * chord[0] + chord[1] * chord[1]), y * grids.clip
+        weight = half / math.sqrt(half * half + height * height)
+        rho = weight / (1.0 + weight)
+    rho = math.floor(rho * float(steps) + 0.5) + unit * tape.near("Off" if side else "Rho", 0, 1 << 50)
+    require(0 < rho < steps, "rho")
+    return [p1, p2, p3, rho / steps]
+
+
+def told(conic):
+    """A clip curve as it is printed."""
+    p1, p2, p3, rho = conic
+    p2 = p2 if rho > 0.0 else [0.0, 0.0]
+    return {"alpha1": central(p1), "alpha3": central(p3), "p2": p2, "rho": rho}
 
 
 def central(p):
@@ -375,7 +584,7 @@ def central(p):
     return angle if angle < 2 * math.pi else 0.0
 
 
-def read_splat(tape, grids, last, done):
+def read_splat(tape, grids, last, done, leads):
     kind = tape.kind()
     fineness, turn = kind >> 4 & 3, kind >> 6
     if fineness == 3:
@@ -415,7 +624,6 @@ def read_splat(tape, grids, last, done):
     sort = kind >> 2 & 3
     counts = [[0, 0], [1, 0], [0, 1]][sort] if sort < 3 else [tape.number("More"), tape.number("More")]
     require(max(counts) <= 1 << 16 and (sort < 3 or sum(counts) >= 2), "clip counts")
-    clips = [read_clip(tape, grids, sizes, radii, n >= counts[0]) for n in range(sum(counts))]
     axis = (max(range(3), key=lambda n: (abs(k[n]), -n)) + turn) % 3
     center = list(coarse)
     center[axis] = grids.coordinate(cell[axis], low[axis] << (height - slide) | rise, height)
@@ -428,10 +636,15 @@ def read_splat(tape, grids, last, done):
         "k": k,
         "radii": radii,
         "curvature": [b * step / (r * r) for b, r in zip(bend, radii)],
-        "clips": clips,
         "color": [255, 255, 255],
         "sizes": sizes,
     }
+    recent = leads[-512:][::-1]
+    ranked = sorted(range(len(recent)), key=lambda n: (distance(recent[n], center), n)) if sum(counts) else []
+    nearby = [recent[n] for n in ranked[:64]]
+    clips = [read_clip(tape, grids, splat, n >= counts[0], nearby) for n in range(sum(counts))]
+    leads.extend(lead_of(splat, clip, grids.E) for clip in clips)
+    splat["clips"] = [told(clip) for clip in clips]
     return morton, splat, counts
 
 
@@ -481,9 +694,9 @@ def decode(data):
     require(head["splats"] <= 4 * len(chunks.get("SPLT", b"")), "too few bytes for the splats")
     require(head["splats"] > 0 or "SPLT" not in chunks, "a chunk without splats")
     tape, grids = Tape(chunks.get("SPLT", b"")), Grids(head)
-    morton, splats, clips, quadric = 0, [], [0, 0], False
+    morton, splats, clips, quadric, leads = 0, [], [0, 0], False, []
     for _ in range(head["splats"]):
-        morton, splat, counts = read_splat(tape, grids, morton, splats)
+        morton, splat, counts = read_splat(tape, grids, morton, splats, leads)
         clips = [a + b for a, b in zip(clips, counts)]
         quadric |= splat["curvature"] != [0.0, 0.0]
         splats.append(splat)

@@ -12,7 +12,8 @@ use crate::error::{Error, Result};
 /// A symbol costs at most 8 times 12 bits. A splat has 12 of them (kind, cell, two radii, two each of
 /// normal and sagittas, turn, escape and two counts) and these extra bits: cell 98; place 3 x 24 and 24;
 /// radii 2 x 9; normal 2 x 60; sagittas 2 x 41; turn 40; escape and counts 3 x 15: 207 bytes in all. A clip
-/// curve has 5, and 201 bits: 86 bytes.
+/// curve has 9 (form, side, rank, grain and five numbers), and at most 50 extra bits for each but three of
+/// them: 146 bytes.
 const MOST_EACH: u64 = 208;
 
 /// A byte holds at most this many splats, so that what is allocated for splats is in proportion to the

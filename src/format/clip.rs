@@ -18,13 +18,14 @@
 //!    `dy/drho = (1-rho) y² / (rho³ (1 + (k-1) y))` grows with `y`, and is 1 at the top,
 //!    `y = rho`). That is at most `c / 2`. Together: `c (1/sqrt 2 + 1/2)`.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::accept::refused;
 use super::bound::Moved;
 use super::grid::{CONTROL_LIMIT, rho_steps};
+use super::homogeneous::Homogeneous;
 use super::quantize::Quantizer;
-use super::record::{ClipRecord, Record};
+use super::record::{ClipRecord, Record, chord_frame};
 use crate::error::Result;
 use crate::model::clip_curve::{Conic, turn};
 use crate::model::splat::Splat;
@@ -111,9 +112,10 @@ impl Quantizer {
         if conic.rho == 0.0 {
             return Ok(Some(straight));
         }
-        let ends = self.grids.clip_curve(&straight, record.sizes).conic(radii);
-        let arm = conic.p2 - 0.5 * (ends.p1 + ends.p3);
-        let steps = (arm / self.grids.clip()).round();
+        let [p1, p3] = self.grids.ends(&straight, record.sizes);
+        let arm = conic.p2 - 0.5 * (p1 + p3);
+        let [along, across] = chord_frame(p1, p3);
+        let steps = (DVec2::new(arm.dot(along), arm.dot(across)) / self.grids.clip()).round();
         let in_range =
             arm.length() <= CONTROL_RANGE * radii.x && steps.abs().max_element() < CONTROL_LIMIT as f64;
         if !in_range {
@@ -181,31 +183,10 @@ fn along(inner: DVec2, end: DVec2, radii: DVec2) -> DVec2 {
     if t.is_finite() { end + t * (end - inner) } else { end }
 }
 
-/// A conic with its weights as third coordinates.
-struct Homogeneous([DVec3; 3]);
-
 impl Homogeneous {
-    fn new(conic: &Conic) -> Self {
-        let weighted = |p: DVec2, w: f64| (p * w).extend(w);
-        let (outer, inner) = (1.0 - conic.rho, conic.rho);
-        Self([weighted(conic.p1, outer), weighted(conic.p2, inner), weighted(conic.p3, outer)])
-    }
-
-    /// The blossom: the symmetric bilinear form whose diagonal is the curve.
-    fn blossom(&self, s: f64, t: f64) -> DVec3 {
-        let [a, b, c] = self.0;
-        (1.0 - s) * (1.0 - t) * a + (s * (1.0 - t) + t * (1.0 - s)) * b + s * t * c
-    }
-
     /// Whether a point is outside the ellipse; beyond the conic's infinity counts as outside.
     fn outside(&self, t: f64, radii: DVec2) -> bool {
         self.reach(t, radii) > 1.0
-    }
-
-    /// The distance from the centre in units of the ellipse; infinite beyond infinity.
-    fn reach(&self, t: f64, radii: DVec2) -> f64 {
-        let point = self.blossom(t, t);
-        if point.z > 0.0 { (point.truncate() / radii).length() / point.z } else { f64::INFINITY }
     }
 
     /// The parameter nearest to an end at which the conic crosses the border, if the way there
@@ -242,21 +223,5 @@ impl Homogeneous {
             }
         }
         end + low
-    }
-
-    /// The conic from `t1` to `t3` in standard form; `None` where a weight is not positive.
-    fn span(&self, t1: f64, t3: f64) -> Option<Conic> {
-        let [a, b, c] = [self.blossom(t1, t1), self.blossom(t1, t3), self.blossom(t3, t3)];
-        if a.z > 0.0 && b.z > 0.0 && c.z > 0.0 {
-            let weight = b.z / (a.z * c.z).sqrt();
-            Some(Conic {
-                p1: a.truncate() / a.z,
-                p2: b.truncate() / b.z,
-                p3: c.truncate() / c.z,
-                rho: weight / (1.0 + weight),
-            })
-        } else {
-            None
-        }
     }
 }

@@ -185,11 +185,23 @@ impl Grids {
         self.budget * (f64::from(self.steps.clip) / 1024.0)
     }
 
-    /// Steps of a border point around the ellipse with this larger radius.
+    /// Steps of a border point around the ellipse with this larger radius: a multiple of the coarsest
+    /// [`GRAINS`].
     #[must_use]
     pub fn border_steps(&self, large: Size) -> u64 {
-        (radius(large) * BORDER * 1024.0 / f64::from(self.steps.clip)).ceil().max(4.0) as u64
+        let coarsest = unit(0);
+        let finest = radius(large) * BORDER * 1024.0 / f64::from(self.steps.clip);
+        (finest / coarsest as f64).ceil().max(1.0) as u64 * coarsest
     }
+}
+
+/// Clip curves are written in steps of one size of so many, each half of the one before.
+pub const GRAINS: u8 = 5;
+
+/// Clip steps in a step of a grain; the finest has one.
+#[must_use]
+pub fn unit(grain: u8) -> u64 {
+    1 << (GRAINS - 1 - grain)
 }
 
 /// Steps of `rho` for a control point this many clip steps from the chord's middle.

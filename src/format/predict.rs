@@ -5,7 +5,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::record::Record;
+use super::grid::Grids;
+use super::lead::Lead;
+use super::record::{ClipRecord, Record};
 use super::{octahedral, turns};
 use crate::model::splat::Splat;
 
@@ -18,18 +20,45 @@ const TRUST: f64 = 2.0;
 /// Guessed sagittas stay within the range of true ones.
 const BEND_GUESS: i64 = 1 << 40;
 
+/// A clip curve may follow one of so many before it,
+pub const LEAD_WINDOW: usize = 512;
+
+/// of those that pass nearest to its splat.
+pub const LEADS: usize = 64;
+
 /// The splats already carried.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     records: Vec<Record>,
     splats: Vec<Splat>,
+    leads: Vec<Lead>,
 }
 
 impl History {
-    /// Adds a record and the splat it stands for.
-    pub fn push(&mut self, record: Record, splat: Splat) {
+    /// Adds a record.
+    pub fn push(&mut self, record: Record, grids: &Grids) {
+        let splat = grids.splat(&record);
+        let lead = |clip: &ClipRecord| Lead::of(&splat, &grids.conic(clip, record.sizes), grids.budget);
+        self.leads.extend(record.clips.iter().map(lead));
         self.records.push(record);
         self.splats.push(splat);
+    }
+
+    /// Of the last [`LEAD_WINDOW`] clip curves the [`LEADS`] that pass nearest to a place, the nearest first; the
+    /// latest of equals.
+    #[must_use]
+    pub fn leads(&self, place: DVec3) -> Vec<&Lead> {
+        let recent = &self.leads[self.leads.len().saturating_sub(LEAD_WINDOW)..];
+        let mut away: Vec<(f64, usize)> =
+            recent.iter().rev().map(|lead| lead.distance_squared(place)).zip(0..).collect();
+        let order =
+            |one: &(f64, usize), other: &(f64, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
+        if away.len() > LEADS {
+            away.select_nth_unstable_by(LEADS, order);
+            away.truncate(LEADS);
+        }
+        away.sort_unstable_by(order);
+        away.into_iter().map(|(_, back)| &recent[recent.len() - 1 - back]).collect()
     }
 
     /// The splats.

@@ -67,8 +67,7 @@ pub(super) fn read_splats(header: &Header, bytes: &[u8], reader: &mut Reader<'_>
         let mut record = Record::default();
         walk(&mut record, &history, &grids, reader)?;
         found.add(&record);
-        let splat = grids.splat(&record);
-        history.push(record, splat);
+        history.push(record, &grids);
     }
     if header.splats > 0 {
         reader.finish()?;

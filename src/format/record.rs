@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::grid::{CELL_BIAS, Grids, Size, radius, rho_steps};
 use super::{octahedral, turns};
-use crate::model::clip_curve::ClipCurve;
+use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
 
 /// A splat on the grids of [`Grids`].
@@ -46,7 +46,7 @@ pub struct ClipRecord {
     pub start: u64,
     /// Border steps from `P1` on to `P3`, at least 1 and less than a whole turn.
     pub sweep: u64,
-    /// `P2` from the middle of the chord, in clip steps.
+    /// `P2` from the middle of the chord, along and to the left of it, in clip steps.
     pub control: [i64; 2],
 }
 
@@ -123,28 +123,49 @@ impl Grids {
     }
 
     /// A border point by its step, in the splat's plane.
-    fn border(&self, step: u64, sizes: [Size; 2]) -> DVec2 {
+    #[must_use]
+    pub fn border(&self, step: u64, sizes: [Size; 2]) -> DVec2 {
         let (sin, cos) = turns::sin_cos(step, self.border_steps(sizes[0]));
         self.radii(sizes) * DVec2::new(cos, sin)
     }
 
-    /// The clip curve a record stands for.
+    /// The ends of the clip curve a record stands for, in the splat's plane.
+    #[must_use]
+    pub fn ends(&self, clip: &ClipRecord, sizes: [Size; 2]) -> [DVec2; 2] {
+        let end = (clip.start + clip.sweep) % self.border_steps(sizes[0]);
+        [self.border(clip.start, sizes), self.border(end, sizes)]
+    }
+
+    /// The clip curve a record stands for, in the splat's plane; a chord has its middle for `P2`.
+    #[must_use]
+    pub fn conic(&self, clip: &ClipRecord, sizes: [Size; 2]) -> Conic {
+        let [p1, p3] = self.ends(clip, sizes);
+        let middle = 0.5 * (p1 + p3);
+        if clip.rho == 0 {
+            return Conic { p1, p2: middle, p3, rho: 0.0 };
+        }
+        let [along, across] = chord_frame(p1, p3);
+        let [x, y] = clip.control.map(|steps| steps as f64);
+        let p2 = middle + (x * along + y * across) * self.clip();
+        Conic { p1, p2, p3, rho: clip.rho as f64 / rho_steps(clip.control) as f64 }
+    }
+
+    /// The same as a splat holds it.
     #[must_use]
     pub fn clip_curve(&self, clip: &ClipRecord, sizes: [Size; 2]) -> ClipCurve {
-        let count = self.border_steps(sizes[0]);
-        let p1 = self.border(clip.start, sizes);
-        let p3 = self.border((clip.start + clip.sweep) % count, sizes);
-        if clip.rho == 0 {
-            return ClipCurve::chord(central_angle(p1), central_angle(p3));
-        }
-        let control = DVec2::new(clip.control[0] as f64, clip.control[1] as f64);
-        ClipCurve {
-            alpha1: central_angle(p1),
-            alpha3: central_angle(p3),
-            p2: 0.5 * (p1 + p3) + control * self.clip(),
-            rho: clip.rho as f64 / rho_steps(clip.control) as f64,
-        }
+        let Conic { p1, p2, p3, rho } = self.conic(clip, sizes);
+        let (alpha1, alpha3) = (central_angle(p1), central_angle(p3));
+        if clip.rho == 0 { ClipCurve::chord(alpha1, alpha3) } else { ClipCurve { alpha1, alpha3, p2, rho } }
     }
+}
+
+/// Unit vectors along a chord and to the left of it. Not finite where its ends are one.
+#[must_use]
+pub fn chord_frame(p1: DVec2, p3: DVec2) -> [DVec2; 2] {
+    let chord = p3 - p1;
+    let length = (chord.x * chord.x + chord.y * chord.y).sqrt();
+    let along = DVec2::new(chord.x / length, chord.y / length);
+    [along, DVec2::new(-along.y, along.x)]
 }
 
 /// The angle of a point seen from the centre, in `[0, 2π)`.

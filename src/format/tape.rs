@@ -26,24 +26,39 @@ pub enum Field {
     Spin,
     /// What is rarely needed: counts of clip curves, high fineness.
     More,
-    /// Ends of clip curves.
+    /// Whether a clip curve follows another, and of which side of the line.
+    Lead,
+    /// Which one it follows.
+    Rank,
+    /// How coarse a clip curve's steps are.
+    Grain,
+    /// Which curves are corners.
+    Corner,
+    /// How far clip curves are from those they follow.
+    Off,
+    /// Ends of clip curves that follow none.
     Ends,
-    /// Control points of clip curves.
+    /// Their control points.
     Ctrl,
-    /// Shapes of clip curves.
+    /// Their shapes.
     Rho,
 }
 
 /// How many fields there are.
-const FIELDS: usize = 11;
+const FIELDS: usize = 16;
 
 /// The names of the fields in order, and of the places in cells, which take no symbols.
-pub const PARTS: [&str; FIELDS + 1] =
-    ["kind", "cell", "size", "shape", "norm", "bend", "spin", "more", "ends", "ctrl", "rho", "place"];
+pub const PARTS: [&str; FIELDS + 1] = [
+    "kind", "cell", "size", "shape", "norm", "bend", "spin", "more", "lead", "rank", "grain", "corner",
+    "off", "ends", "ctrl", "rho", "place",
+];
 
 /// One walk over a record serves writing and reading: a writer takes the values, a reader
 /// sets them.
 pub trait Tape {
+    /// Whether values are taken, so that it is to be chosen how they are told.
+    fn is_writing(&self) -> bool;
+
     /// A kind, one byte.
     ///
     /// # Errors
@@ -108,6 +123,10 @@ impl Writer {
 }
 
 impl Tape for Writer {
+    fn is_writing(&self) -> bool {
+        true
+    }
+
     fn kind(&mut self, value: &mut u8) -> Result<()> {
         self.coder.byte(&mut self.models[Field::Kind as usize], *value);
         Ok(())
@@ -197,6 +216,10 @@ impl<'a> Reader<'a> {
 }
 
 impl Tape for Reader<'_> {
+    fn is_writing(&self) -> bool {
+        false
+    }
+
     fn kind(&mut self, value: &mut u8) -> Result<()> {
         *value = self.part(Field::Kind as usize, |tape| tape.symbol(Field::Kind))?;
         Ok(())

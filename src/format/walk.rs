@@ -2,11 +2,12 @@
 //!
 //! One function serves writing and reading, see [`Tape`].
 
-use super::grid::{CONTROL_LIMIT, GUESS_BEND, GUESS_SPIN, Grids, MAX_FINENESS, RADIUS_CODES, rho_steps};
+use super::clip_walk::clips;
+use super::grid::{GUESS_BEND, GUESS_SPIN, Grids, MAX_FINENESS, RADIUS_CODES};
 use super::octahedral;
 use super::order::{MORTON_END, cell, morton};
 use super::predict::{History, bend_near, normal_near, spin_near};
-use super::record::{ClipRecord, Record};
+use super::record::Record;
 use super::tape::{Field, Tape};
 use crate::error::{Error, Result};
 use crate::model::splat::Splat;
@@ -24,9 +25,6 @@ pub const TURN_SHIFT: u8 = 6;
 
 /// The fineness from which on the field `More` holds the rest.
 const FINENESS_ESCAPE: u8 = 3;
-
-/// A splat has at most this many straight and this many curved clips.
-pub const MAX_CLIPS: u64 = 1 << 16;
 
 /// Sagittas are at most this many steps.
 pub const MAX_BEND: u64 = 1 << 40;
@@ -70,7 +68,7 @@ pub fn walk(record: &mut Record, history: &History, grids: &Grids, tape: &mut im
     normal(record, near, grids, tape)?;
     bend(record, near, kind, grids, tape)?;
     spin(record, near, grids, tape)?;
-    clips(record, kind, grids, tape)
+    clips(record, kind, history, grids, tape)
 }
 
 /// The kind's fineness and turn.
@@ -181,53 +179,5 @@ fn spin(record: &mut Record, near: Option<&Splat>, grids: &Grids, tape: &mut imp
         return Err(Error::format("field Spin", format!("{off} is not below {half}")));
     }
     record.spin = (guess + off).rem_euclid(count) as u64;
-    Ok(())
-}
-
-/// The clip curves, straight ones first.
-fn clips(record: &mut Record, kind: u8, grids: &Grids, tape: &mut impl Tape) -> Result<()> {
-    let straight = record.clips.iter().filter(|clip| clip.rho == 0).count() as u64;
-    let mut counts = [straight, record.clips.len() as u64 - straight];
-    match kind >> CLIP_SHIFT & 3 {
-        0 => counts = [0, 0],
-        1 => counts = [1, 0],
-        2 => counts = [0, 1],
-        _ => {
-            for count in &mut counts {
-                tape.number(Field::More, count, MAX_CLIPS)?;
-            }
-            if counts[0] + counts[1] < 2 {
-                return Err(Error::format("field More", "counts clip curves that the kind can state"));
-            }
-        }
-    }
-    let border = grids.border_steps(record.sizes[0]);
-    let mut written = std::mem::take(&mut record.clips).into_iter();
-    for n in 0..counts[0] + counts[1] {
-        let mut clip = written.next().unwrap_or_default();
-        one_clip(&mut clip, n >= counts[0], border, tape)?;
-        record.clips.push(clip);
-    }
-    Ok(())
-}
-
-/// One clip curve.
-fn one_clip(clip: &mut ClipRecord, curved: bool, border: u64, tape: &mut impl Tape) -> Result<()> {
-    tape.number(Field::Ends, &mut clip.start, border - 1)?;
-    let mut beyond = clip.sweep.saturating_sub(1);
-    tape.number(Field::Ends, &mut beyond, border - 2)?;
-    clip.sweep = beyond + 1;
-    if curved {
-        for value in &mut clip.control {
-            tape.near(Field::Ctrl, value, 0, CONTROL_LIMIT)?;
-        }
-        let steps = rho_steps(clip.control);
-        if steps == 0 {
-            return Err(Error::format("field Ctrl", "has a control point on its chord's middle"));
-        }
-        let mut less = clip.rho.saturating_sub(1);
-        tape.number(Field::Rho, &mut less, steps - 1)?;
-        clip.rho = less + 1;
-    }
     Ok(())
 }

@@ -110,8 +110,7 @@ fn splats(grids: &Grids, records: &[Record]) -> Result<Vec<u8>> {
     for record in records {
         let mut record = record.clone();
         walk(&mut record, &history, grids, &mut writer)?;
-        let splat = grids.splat(&record);
-        history.push(record, splat);
+        history.push(record, grids);
     }
     Ok(writer.finish())
 }
