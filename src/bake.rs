@@ -37,6 +37,7 @@ use crate::model::mesh::Mesh;
 use crate::model::polyline::Polylines;
 use crate::model::sight::Faults;
 use crate::model::splat::Splat;
+use crate::model::trial::Trial;
 use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
@@ -53,7 +54,7 @@ use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `scout`, `sample`, `cover`, `bound`, `seal`, `partners`, `encode`,
+    /// A stage begins (`read`, `analyse`, `scout`, `sample`, `cover`, `bound`, `clip`, `seal`, `partners`, `encode`,
     /// `measure`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
@@ -114,6 +115,10 @@ pub struct Baked {
 /// Some(s.clone())`.
 pub type Rounding<'a> = dyn Fn(&Splat, f64) -> Option<Splat> + Sync + 'a;
 
+/// Clip curves that cost whoever stores them less, within an error bound in model units, as far as they will
+/// do. For those who store nothing: `|_, _, _| Ok(())`.
+pub type Saving<'a> = dyn Fn(&mut [Splat], f64, &mut dyn Trial) -> Result<()> + Sync + 'a;
+
 /// The rays on which whoever shows an asset sees more or less of it than of the input, or of what stands
 /// in for that. For those who show nothing: `|_, _| Ok(Faults::default())`.
 pub type Looking<'a> = dyn FnMut(&Input, &Asset) -> Result<Faults> + 'a;
@@ -128,6 +133,7 @@ pub fn bake(
     input: &Input,
     options: &Options,
     rounding: &Rounding<'_>,
+    saving: &Saving<'_>,
     looking: &mut Looking<'_>,
     progress: &mut dyn Progress,
 ) -> Result<Baked> {
@@ -168,6 +174,10 @@ pub fn bake(
         clock.stage(progress, "bound");
         cover.lower_bound()
     });
+    clock.stage(progress, "clip");
+    if options.clips != Clips::Partners {
+        cover.save(&grower, &regions, &|splats, trial| saving(splats, max_error, trial))?;
+    }
     let asset = |splats: Vec<Splat>| Asset {
         frame: cloud.frame,
         // Rounded to what a file keeps in four bytes, as the bound is.

@@ -34,7 +34,7 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     let rounding = |splat: &Splat, max_error| Quantizer::new(max_error).snap(splat).ok();
     let mut sights = None;
     let mut looking = |input: &Input, asset: &Asset| faults(input, asset, &mut sights);
-    let baked = bake(input, options, &rounding, &mut looking, progress)?;
+    let baked = bake(input, options, &rounding, &format::thrift::save, &mut looking, progress)?;
     let mut clock = Clock::default();
     clock.stage(progress, "encode");
     let bytes = format::encode(&baked.asset)?;
@@ -60,7 +60,7 @@ fn faults(input: &Input, asset: &Asset, sights: &mut Option<Sights>) -> Result<F
         Some(known) => known,
         None => sights.insert(Sights::of(mesh)?),
     };
-    known.faults(&format::decode(&format::encode(asset)?, &format::Limits::default())?)
+    known.faults(&format::snap(asset)?)
 }
 
 /// Measures the fit of the decoded splats and holds it against the bound.

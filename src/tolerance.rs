@@ -35,6 +35,10 @@ pub const CLIP_MISS_SHARE: f64 = 0.3;
 /// Share of the budget by which rounding may move a clip curve.
 pub const CLIP_QUANTIZE_SHARE: f64 = 0.1;
 
+/// A rounded clip curve lies at least this share of the budget outside its line, and at most one whole
+/// budget: what outset, miss and rounding leave.
+pub const CLIP_LEAST_SHARE: f64 = CLIP_OUTSET_SHARE - CLIP_MISS_SHARE - CLIP_QUANTIZE_SHARE;
+
 /// Share of the budget that a clip partner begins to cut beyond its surface.
 ///
 /// At a feature line both surfaces may miss the line by [`LINE_FIT_SHARE`] of what splats are

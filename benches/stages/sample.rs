@@ -25,6 +25,7 @@ pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
             &input,
             &Options::default(),
             &rounding,
+            &|_, _, _| Ok(()),
             &mut |_, _| Ok(Faults::default()),
             &mut Silent,
         ) {

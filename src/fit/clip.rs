@@ -20,6 +20,8 @@ pub struct ClipTolerance {
     pub outset: f64,
     /// How far a curve may miss that; no more than `outset`, or it could cut the surface.
     pub miss: f64,
+    /// How far outside its line a curve must lie at least.
+    pub least: f64,
     /// How far from its line, in space, a curve of a splat that is done may lie.
     pub edge: f64,
     /// Which curves may be used.
@@ -32,6 +34,13 @@ impl ClipTolerance {
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.outset + 2.0 * self.miss
+    }
+
+    /// A share of all of it.
+    #[must_use]
+    pub fn scaled(&self, share: f64) -> Self {
+        let &Self { outset, miss, least, edge, clips } = self;
+        Self { outset: share * outset, miss: share * miss, least: share * least, edge: share * edge, clips }
     }
 }
 
@@ -237,11 +246,11 @@ pub fn follows(
     (0..count).all(|n| {
         let (a, b) = (line[n], line[(n + 1) % line.len()]);
         let length = a.distance(b);
-        let out = -(b - a).perp().normalize_or_zero() * reach;
+        let out = -(b - a).perp().normalize_or_zero();
         let clear = (2.0 * reach / length).min(0.5);
         [clear, 0.5, 1.0 - clear].into_iter().map(|t| a.lerp(b, t)).all(|p| {
-            let outer = p + out;
-            (!inside(p) || !cuts(p)) && (!inside(outer) || cuts(outer))
+            let (inner, outer) = (p + tolerance.least * out, p + reach * out);
+            (!inside(inner) || !cuts(inner)) && (!inside(outer) || cuts(outer))
         })
     })
 }
@@ -276,7 +285,7 @@ mod tests {
     use super::*;
 
     const TOLERANCE: ClipTolerance =
-        ClipTolerance { outset: 0.002, miss: 0.002, edge: 0.004, clips: Clips::Curved };
+        ClipTolerance { outset: 0.002, miss: 0.002, least: 0.0, edge: 0.004, clips: Clips::Curved };
     const STRAIGHT: ClipTolerance = ClipTolerance { clips: Clips::Straight, ..TOLERANCE };
 
     fn check(line: &[DVec2], closed: bool, radii: DVec2) -> Option<usize> {

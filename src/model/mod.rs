@@ -10,4 +10,5 @@ pub mod partner;
 pub mod polyline;
 pub mod sight;
 pub mod splat;
+pub mod trial;
 pub mod triangle;

@@ -41,38 +41,60 @@ pub enum Look {
     Fine,
 }
 
-/// Whether, at every place around the rim that is not cut away, the surface lies within the
-/// budget for rims.
-#[must_use]
-pub fn backed(
-    grower: &Grower,
-    pose: &Pose,
+/// A splat over the surface around its rim, whatever it is cut by.
+pub struct Backing<'a> {
+    budget: &'a Budget,
+    overhang: f64,
     outer: DVec2,
     curvature: DVec2,
-    clips: &[ClipCurve],
-    region: &Region,
-    look: Look,
-) -> bool {
-    let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(outer)).collect();
-    let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
-    let reach = grower.budget.clip.reach();
-    // Curves pass somewhat outside their lines: just inside a curve there is no surface.
-    let beside_cut = |uv: DVec2| directions(AROUND).any(|direction| cut(uv + reach * direction));
-    let below = match (grower.surface.spots.is_empty(), look) {
-        (true, _) => Below::triangles(grower.surface, pose, region.rim.iter().map(|&(_, outside)| outside)),
-        (false, Look::Coarse) => Below::points(grower.surface, pose, region),
-        (false, Look::Fine) => Below::spots(grower, pose, outer, curvature, region),
-    };
-    if !below.points.is_empty() {
-        let near = below.near_rim(outer, grower.budget.pad);
-        let places = directions(near.len()).map(|direction| direction * outer).zip(near);
-        return places.filter(|&(uv, near)| !near && !cut(uv)).all(|(uv, _)| beside_cut(uv));
+    below: Below,
+    /// For places at equal angles around the rim over a cloud, whether one of its points is in reach.
+    near: Vec<bool>,
+}
+
+impl<'a> Backing<'a> {
+    /// That of an ellipse in a pose, over what it reaches.
+    #[must_use]
+    pub fn of(
+        grower: &'a Grower,
+        pose: &Pose,
+        outer: DVec2,
+        curvature: DVec2,
+        region: &Region,
+        look: Look,
+    ) -> Self {
+        let outside = || region.rim.iter().map(|&(_, outside)| outside);
+        let below = match (grower.surface.spots.is_empty(), look) {
+            (true, _) => Below::triangles(grower.surface, pose, outside()),
+            (false, Look::Coarse) => Below::points(grower.surface, pose, region),
+            (false, Look::Fine) => Below::spots(grower, pose, outer, curvature, region),
+        };
+        let (budget, overhang) = (&grower.budget, grower.overhang);
+        let cloud = !below.points.is_empty();
+        let near = if cloud { below.near_rim(outer, budget.pad) } else { Vec::new() };
+        Self { budget, overhang, outer, curvature, below, near }
     }
-    let places = rim_places(outer, grower.budget.rim).chain(between_cuts(clips, outer));
-    places.filter(|&uv| !cut(uv)).all(|uv| {
-        let height = (curvature * uv * uv).element_sum();
-        below.near(uv, height, &grower.budget, grower.overhang) || beside_cut(uv)
-    })
+
+    /// Whether, at every place around the rim that clip curves do not cut away, the surface lies within
+    /// the budget for rims.
+    #[must_use]
+    pub fn holds(&self, clips: &[ClipCurve]) -> bool {
+        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.outer)).collect();
+        let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
+        let reach = self.budget.clip.reach();
+        // Curves pass somewhat outside their lines: just inside a curve there is no surface.
+        let beside_cut = |uv: DVec2| directions(AROUND).any(|direction| cut(uv + reach * direction));
+        if !self.near.is_empty() {
+            let rim = directions(self.near.len()).map(|direction| direction * self.outer);
+            let mut bare = rim.zip(&self.near).filter(|&(uv, near)| !near && !cut(uv));
+            return bare.all(|(uv, _)| beside_cut(uv));
+        }
+        let places = rim_places(self.outer, self.budget.rim).chain(between_cuts(clips, self.outer));
+        places.filter(|&uv| !cut(uv)).all(|uv| {
+            let height = (self.curvature * uv * uv).element_sum();
+            self.below.near(uv, height, self.budget, self.overhang) || beside_cut(uv)
+        })
+    }
 }
 
 /// Places around an ellipse, close enough together that by its rim budget little stands out between.

@@ -3,7 +3,9 @@
 use glam::DVec2;
 
 use crate::fit::clip::{ClipTolerance, Clips};
-use crate::tolerance::{CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, FIT_SHARE, LINE_FIT_SHARE};
+use crate::tolerance::{
+    CLIP_LEAST_SHARE, CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, FIT_SHARE, LINE_FIT_SHARE,
+};
 
 /// Distances that growing a splat must keep, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Budget {
     pub pad: f64,
     /// For clip curves.
     pub clip: ClipTolerance,
+    /// For clip curves that are rounded already: what rounding may take is theirs as well.
+    pub stored: ClipTolerance,
 }
 
 /// Share of the bound by which a rim may stand out beside the surface, as cut borders do: where that is
@@ -39,6 +43,10 @@ const OVERHANG_SHARE: f64 = 0.5;
 /// their backward rms.
 const PROUD: f64 = 1.4;
 
+/// A rounded clip curve lies within this share of the bound of its line, in space, where it is looked at;
+/// between such places it may lie a little farther off.
+const STORED_EDGE_SHARE: f64 = 0.97;
+
 /// Share of the bound that domains are padded by.
 const PAD_SHARE: f64 = 0.75;
 
@@ -49,6 +57,13 @@ impl Budget {
     /// Shares out a bound in model units, for splats cut by these curves.
     #[must_use]
     pub fn new(max_error: f64, clips: Clips) -> Self {
+        let clip = ClipTolerance {
+            outset: CLIP_OUTSET_SHARE * max_error,
+            miss: CLIP_MISS_SHARE * max_error,
+            least: 0.0,
+            edge: (1.0 - CLIP_QUANTIZE_SHARE) * max_error,
+            clips,
+        };
         Self {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
@@ -56,11 +71,12 @@ impl Budget {
             proud: PROUD * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,
             pad: PAD_SHARE * max_error,
-            clip: ClipTolerance {
-                outset: CLIP_OUTSET_SHARE * max_error,
-                miss: CLIP_MISS_SHARE * max_error,
-                edge: (1.0 - CLIP_QUANTIZE_SHARE) * max_error,
-                clips,
+            clip,
+            stored: ClipTolerance {
+                miss: (CLIP_MISS_SHARE + CLIP_QUANTIZE_SHARE) * max_error,
+                least: CLIP_LEAST_SHARE * max_error,
+                edge: STORED_EDGE_SHARE * max_error,
+                ..clip
             },
         }
     }
@@ -68,8 +84,7 @@ impl Budget {
     /// A share of all of it.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
-        let &Self { fit, line, rim, proud, overhang, pad, clip } = self;
-        let ClipTolerance { outset, miss, edge, clips } = clip;
+        let &Self { fit, line, rim, proud, overhang, pad, clip, stored } = self;
         Self {
             fit: share * fit,
             line: share * line,
@@ -77,7 +92,8 @@ impl Budget {
             proud: share * proud,
             overhang: share * overhang,
             pad: share * pad,
-            clip: ClipTolerance { outset: share * outset, miss: share * miss, edge: share * edge, clips },
+            clip: clip.scaled(share),
+            stored: stored.scaled(share),
         }
     }
 

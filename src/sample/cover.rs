@@ -22,8 +22,9 @@ use rayon::prelude::*;
 /// About what a splat costs in the file, in bytes: enough to weigh kinds against each other.
 ///
 /// Over the files of nine models a flat splat comes to 6 to 8 bytes, a quadric to 7 to 10, a straight
-/// clip to 2 to 4 and a curved one to 6 to 10, the more the larger the splat is. Weights fitted to
-/// these (7, 8.5, 3.5 and 9; 6.5, 8, 3 and 7.5) made files no smaller than those here.
+/// clip to 2 and a curved one to 3 to 6, the more the larger the splat is and the fewer are told by those
+/// that they follow. Weights nearer to these (clips of 2.2 and 3.5, or of 2.5 and 4.5) made files no smaller
+/// than those here.
 #[must_use]
 pub fn cost(splat: &Splat) -> f64 {
     let base = match splat.kind() {
@@ -268,7 +269,7 @@ pub(super) mod tests {
             partners: Vec::new(),
             color: [u8::MAX; 3],
         };
-        Candidate { splat, end_clips: Vec::new(), pieces: pieces.to_vec(), rank: 6 }
+        Candidate { splat, end_clips: Vec::new(), last_resort: false, pieces: pieces.to_vec(), rank: 6 }
     }
 
     #[test]

@@ -8,13 +8,13 @@ use std::cell::Cell;
 
 use glam::{DVec2, DVec3};
 
-use super::backing::{Look, backed};
+use super::backing::{Backing, Look};
 use super::budget::Budget;
 use super::outline::{Outline, holds_an_end, outlines};
 use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
-use crate::fit::clip::{self, Care, Clips};
+use crate::fit::clip::{self, Care, ClipTolerance, Clips};
 use crate::fit::ellipse::{circumellipse, crossings};
 use crate::fit::limits::{self, Limited};
 use crate::fit::pose::{Fitting, Pose, Principal, Shapes, above, miss, principal};
@@ -112,6 +112,28 @@ pub struct Grower<'a> {
     /// Splats are rounded before they are judged and cut, so that storing them changes
     /// nothing that was judged.
     pub round: &'a Round<'a>,
+}
+
+/// Clip curves over a quadric.
+pub(super) struct Cut<'a> {
+    pub(super) clips: &'a [ClipCurve],
+    pub(super) radii: DVec2,
+    pub(super) curvature: DVec2,
+}
+
+impl Cut<'_> {
+    /// Whether they cut along outlines and nowhere else, within `reach` of these in space.
+    pub(super) fn follows(&self, outlines: &[Outline], tolerance: &ClipTolerance, reach: f64) -> bool {
+        let conics: Vec<Conic> = self.clips.iter().map(|clip| clip.conic(self.radii)).collect();
+        let cuts = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
+        let followed = |line: &Outline| clip::follows(&line.points, line.closed, self.radii, cuts, tolerance);
+        let last = vec![Cell::new(0); outlines.len()];
+        let along = |uv: DVec2| {
+            let place = uv.extend((self.curvature * uv * uv).element_sum());
+            outlines.iter().zip(&last).any(|(line, last)| line.near(place, reach, last))
+        };
+        outlines.iter().all(followed) && clip::bounds_only(along, &conics, self.radii, tolerance)
+    }
 }
 
 /// A pose and radii with the quadric found for them.
@@ -229,7 +251,7 @@ impl Grower<'_> {
             return Err(Stop::Fit);
         }
         let clips = self.clips(&fitted.pose, outer, fitted.curvature, Care::Feasible, region)?;
-        if !backed(self, &fitted.pose, outer, fitted.curvature, &clips, region, Look::Coarse) {
+        if !Backing::of(self, &fitted.pose, outer, fitted.curvature, region, Look::Coarse).holds(&clips) {
             return Err(Stop::Bare);
         }
         // The seeds come first of the members.
@@ -364,25 +386,13 @@ impl Grower<'_> {
                 return Err(Stop::Clip);
             }
         }
-        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(outer)).collect();
-        let cuts = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
-        let followed =
-            |line: &Outline| clip::follows(&line.points, line.closed, outer, cuts, &self.budget.clip);
         let tolerance = &self.budget.clip;
         let reach = match care {
             Care::Feasible => tolerance.reach(),
             Care::Nearest => tolerance.edge,
         };
-        let last = vec![Cell::new(0); outlines.len()];
-        let along = |uv: DVec2| {
-            let place = uv.extend((curvature * uv * uv).element_sum());
-            outlines.iter().zip(&last).any(|(line, last)| line.near(place, reach, last))
-        };
-        if outlines.iter().all(followed) && clip::bounds_only(along, &conics, outer, tolerance) {
-            Ok(clips)
-        } else {
-            Err(Stop::Stray)
-        }
+        let cut = Cut { clips: &clips, radii: outer, curvature };
+        if cut.follows(&outlines, tolerance, reach) { Ok(clips) } else { Err(Stop::Stray) }
     }
 
     /// Of the curves that [`Self::clips`] gives, those along which the surface ends, if it is

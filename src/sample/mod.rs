@@ -23,4 +23,5 @@ pub mod scout;
 mod seal;
 mod set_cover;
 pub mod settle;
+pub mod thrift;
 mod withdraw;

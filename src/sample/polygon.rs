@@ -52,7 +52,7 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
     // What ends at a triangle's own sides is cut by itself, whatever lies across.
     let end_clips = splat.clips.clone();
-    Some(Candidate { splat, end_clips, pieces: vec![piece], rank: 3 })
+    Some(Candidate { splat, end_clips, last_resort: true, pieces: vec![piece], rank: 3 })
 }
 
 /// Shares of the padding that a triangle cut along its sides is tried with where all of it would reach

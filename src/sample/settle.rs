@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::backing::{Look, backed};
+use super::backing::{Backing, Look};
 use super::facet::extremes;
 use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
@@ -21,7 +21,7 @@ const SHRINK: (f64, usize) = (0.95, 10);
 const MORE_PAD: f64 = 2.0;
 
 /// A rounded splat may use the whole budget, less this share for the rounding of arithmetic.
-const ROUNDED_SLACK: f64 = (1.0 - 1e-6) / FIT_SHARE;
+pub(super) const ROUNDED_SLACK: f64 = (1.0 - 1e-6) / FIT_SHARE;
 
 /// A quadric whose sagittas are below this many budgets may do as a plane.
 const FLAT_SAGITTA: f64 = 2.0;
@@ -37,6 +37,8 @@ pub struct Candidate {
     pub splat: Splat,
     /// The latter of its clip curves, where partners are to make the other cuts; else none.
     pub end_clips: Vec<ClipCurve>,
+    /// Whether it is one of last resort, which covers its own piece and is cut along the sides of that.
+    pub last_resort: bool,
     /// The pieces it covers, ascending.
     pub pieces: Vec<u32>,
     /// How many of the fit's six terms the points determined.
@@ -122,17 +124,17 @@ fn finish(
         && grower.keeps(&pose, splat.radii, splat.curvature, ROUNDED_SLACK, region);
     splat.clips =
         kept.then(|| grower.clips(&pose, splat.radii, splat.curvature, Care::Nearest, region).ok())??;
-    if !backed(grower, &pose, splat.radii, splat.curvature, &splat.clips, region, Look::Fine) {
+    if !Backing::of(grower, &pose, splat.radii, splat.curvature, region, Look::Fine).holds(&splat.clips) {
         return None;
     }
-    let end_clips = grower.end_clips(&pose, splat.radii, region)?;
-    let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
     let trusted = grower.budget.trusted(splat.radii - more);
+    let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
     let domain = Covering { grower, splat: &splat, conics, trusted };
     let meshed = grower.surface.spots.is_empty();
     let pieces = if meshed { domain.triangles(region) } else { domain.spots(region) }?;
+    let end_clips = grower.end_clips(&pose, splat.radii, region)?;
     splat.color = mean_color(grower, &pieces);
-    Some(Candidate { splat, end_clips, pieces, rank })
+    Some(Candidate { splat, end_clips, last_resort: false, pieces, rank })
 }
 
 /// A splat and what may tell what it covers.

@@ -1,0 +1,121 @@
+//! Other clip curves for the chosen splats, where whoever stores them knows some that cost less.
+
+use glam::DVec2;
+
+use super::backing::{Backing, Look};
+use super::candidates::Regions;
+use super::cover::Cover;
+use super::grow::{Cut, Grower};
+use super::outline::{Outline, outlines};
+use super::region::Region;
+use super::settle::{Candidate, ROUNDED_SLACK};
+use crate::error::Result;
+use crate::fit::pose::Pose;
+use crate::model::clip_curve::{ClipCurve, Conic};
+use crate::model::splat::Splat;
+use crate::model::trial::Trial;
+
+/// Changes the clip curves of splats to others that cost less to store, as far as these will do. For those
+/// who store nothing: `|_, _| Ok(())`.
+pub type Saving<'a> = dyn Fn(&mut [Splat], &mut dyn Trial) -> Result<()> + Sync + 'a;
+
+impl Cover {
+    /// Lets clip curves of the chosen be changed.
+    ///
+    /// # Errors
+    /// Those of `saving`.
+    pub fn save(&mut self, grower: &Grower, regions: &Regions, saving: &Saving<'_>) -> Result<()> {
+        let mut splats = self.splats();
+        regions.with(|region| {
+            let (candidates, chosen) = (&self.candidates, &self.chosen);
+            saving(&mut splats, &mut Cuts { grower, candidates, chosen, region, at: None })
+        })?;
+        for (&index, splat) in self.chosen.iter().zip(splats) {
+            self.candidates[index].splat = splat;
+        }
+        Ok(())
+    }
+}
+
+/// The cuts of the chosen candidates, of which one is at hand.
+struct Cuts<'a> {
+    grower: &'a Grower<'a>,
+    candidates: &'a [Candidate],
+    chosen: &'a [usize],
+    region: &'a mut Region,
+    at: Option<Uncut<'a>>,
+}
+
+/// A splat without its clip curves, and what these have to leave of it.
+struct Uncut<'a> {
+    splat: &'a Splat,
+    /// What it is to be cut along.
+    outlines: Vec<Outline>,
+    backing: Backing<'a>,
+    /// Places that it covers.
+    covered: Vec<DVec2>,
+    /// Places that it strays from, and that are cut away.
+    strayed: Vec<DVec2>,
+}
+
+impl Trial for Cuts<'_> {
+    fn turn_to(&mut self, splat: usize) {
+        let candidate = &self.candidates[self.chosen[splat]];
+        self.at = uncut(candidate, self.grower, self.region);
+    }
+
+    fn will_do(&mut self, clips: &[ClipCurve]) -> bool {
+        let Some(Uncut { splat, outlines, backing, covered, strayed }) = &self.at else { return false };
+        let tolerance = &self.grower.budget.stored;
+        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+        let cuts = |uv: &DVec2| conics.iter().any(|conic| conic.cuts(*uv));
+        let cut = Cut { clips, radii: splat.radii, curvature: splat.curvature };
+        !covered.iter().any(cuts)
+            && strayed.iter().all(cuts)
+            && cut.follows(outlines, tolerance, tolerance.edge)
+            && backing.holds(clips)
+    }
+}
+
+/// A candidate without its clip curves; `None` for one of last resort, which is cut otherwise.
+fn uncut<'a>(candidate: &'a Candidate, grower: &'a Grower, region: &mut Region) -> Option<Uncut<'a>> {
+    let (surface, splat) = (grower.surface, &candidate.splat);
+    let pose = Pose { center: splat.center, axes: splat.axes };
+    let seeds = surface.pieces[*candidate.pieces.first()? as usize];
+    if candidate.last_resort || !region.gather(surface, &pose, splat.radii, &seeds) {
+        return None;
+    }
+    let backing = Backing::of(grower, &pose, splat.radii, splat.curvature, region, Look::Fine);
+    let outlines = outlines(surface, region, &pose, grower.open);
+    let (covered, strayed) = (covered(candidate, grower), strayed(splat, grower, region));
+    Some(Uncut { splat, outlines, backing, covered, strayed })
+}
+
+/// The corners of what a candidate covers, or the spots.
+fn covered(candidate: &Candidate, grower: &Grower) -> Vec<DVec2> {
+    let surface = grower.surface;
+    let local = |place| candidate.splat.to_local(place).truncate();
+    let pieces = || candidate.pieces.iter().map(|&piece| piece as usize);
+    if !surface.spots.is_empty() {
+        return pieces().map(|piece| local(surface.spots[piece].position.as_dvec3())).collect();
+    }
+    let mut corners: Vec<u32> = pieces().flat_map(|piece| surface.pieces[piece]).collect();
+    corners.sort_unstable();
+    corners.dedup();
+    corners.into_iter().map(|corner| local(surface.point(corner))).collect()
+}
+
+/// The spots of a cloud below a splat that it strays from; where triangles are, it strays from none.
+fn strayed(splat: &Splat, grower: &Grower, region: &Region) -> Vec<DVec2> {
+    let surface = grower.surface;
+    if surface.spots.is_empty() {
+        return Vec::new();
+    }
+    let spots = region.reached().flat_map(|point| surface.pieces_of.row(point));
+    let locals = spots.map(|&spot| splat.to_local(surface.spots[spot as usize].position.as_dvec3()));
+    let below = locals.filter(|local| splat.ellipse(local.truncate()) <= 1.0);
+    below
+        .filter(|local| !grower.reaches(splat.curvature, *local, ROUNDED_SLACK))
+        .map(|local| local.truncate())
+        .collect()
+}
