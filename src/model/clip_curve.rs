@@ -119,6 +119,34 @@ impl Conic {
         if area > 0.0 { !inner } else { inner }
     }
 
+    /// How far a place, on either side, lies from the curve, to first order. The plane may be shrunk by
+    /// `scale` along its axes; the distance is that before.
+    ///
+    /// With the areas of [`Self::cuts`] the curve is where `f = (1-rho)² l2² - 4 rho² l1 l3` vanishes, and
+    /// `|f| / |grad f|` is how far off that is (Taubin 1991). Infinite beyond the tangents at the ends, and on
+    /// the chord's far side, where another part of the conic lies.
+    #[must_use]
+    pub fn distance(&self, q: DVec2, scale: DVec2) -> f64 {
+        let slope = |a: DVec2, b: DVec2| DVec2::new(a.y - b.y, b.x - a.x) / scale;
+        let off = |f: f64, gradient: DVec2| {
+            let steep = gradient.length();
+            if steep > 0.0 { f.abs() / steep } else { f64::INFINITY }
+        };
+        let chord = turn(self.p1, self.p3, q);
+        let area = turn(self.p1, self.p2, self.p3);
+        if self.rho == 0.0 || area == 0.0 {
+            return off(chord, slope(self.p1, self.p3));
+        }
+        let sign = area.signum();
+        let (l1, l2, l3) =
+            (sign * turn(self.p2, self.p3, q), -sign * chord, sign * turn(self.p1, self.p2, q));
+        let (outer, inner) = ((1.0 - self.rho) * (1.0 - self.rho), 4.0 * self.rho * self.rho);
+        let tangents = l1 * slope(self.p1, self.p2) + l3 * slope(self.p2, self.p3);
+        let gradient = -2.0 * outer * l2 * slope(self.p1, self.p3) - inner * tangents;
+        let beside = l1 > 0.0 && l2 > 0.0 && l3 > 0.0;
+        if beside { off(outer * l2 * l2 - inner * l1 * l3, gradient) } else { f64::INFINITY }
+    }
+
     /// The point at parameter `t` in `[0, 1]`.
     ///
     /// With `w = rho/(1-rho)` both sides of the fraction are multiplied by `1-rho`, so that
@@ -211,6 +239,34 @@ mod tests {
                 let step = DVec2::Y * 1e-9;
                 assert!(conic.cuts(middle - step), "right of the curve, rho {rho} side {side}");
                 assert!(!conic.cuts(middle + step), "left of the curve, rho {rho} side {side}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_hold_to_first_order() {
+        for rho in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            for side in [-0.8, 0.8] {
+                let conic = Conic { p1: P1, p2: DVec2::new(0.2, side), p3: P3, rho };
+                let curve: Vec<DVec2> = conic.walk(1e-4);
+                for n in 1..40 {
+                    let t = f64::from(n) / 40.0;
+                    // Along the normal, where the curve has one.
+                    let [before, at, after] = [t - 1e-4, t, t + 1e-4].map(|t| conic.point(t));
+                    let normal = (after - before).perp().normalize_or_zero();
+                    for off in [-0.03, 0.03] {
+                        let q = at + off * normal;
+                        let distance = curve.iter().map(|p| p.distance(q)).fold(f64::INFINITY, f64::min);
+                        let scale = DVec2::new(2.0, 0.5);
+                        let small = |p: DVec2| p / scale;
+                        let [p1, p2, p3] = [conic.p1, conic.p2, conic.p3].map(small);
+                        let shrunk = Conic { p1, p2, p3, rho };
+                        let found = shrunk.distance(small(q), scale);
+                        assert!(found > 0.8 * distance, "rho {rho} {q}");
+                        let between = rho == 0.0 || (0.1..0.9).contains(&t);
+                        assert!(!between || found < 1.25 * distance, "rho {rho} {q}: {found}");
+                    }
+                }
             }
         }
     }

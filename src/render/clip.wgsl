@@ -36,6 +36,47 @@ fn cuts(conic: Conic, q: vec2<f32>) -> bool {
     return select(inner, !inner, area > 0.0);
 }
 
+// How fast the doubled area of a triangle from a to b grows with the place, by axes shrunk by scale.
+fn slope_of(a: vec2<f32>, b: vec2<f32>, scale: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(a.y - b.y, b.x - a.x) / scale;
+}
+
+// Farther than any place is from a curve.
+const NOT_NEAR: f32 = 1e30;
+
+fn off_by(f: f32, gradient: vec2<f32>) -> f32 {
+    let steep = length(gradient);
+    return select(NOT_NEAR, abs(f) / steep, steep > 0.0);
+}
+
+// How far a place lies from the curve; twin of `Conic::distance`, which explains it.
+fn distance_from(conic: Conic, q: vec2<f32>, scale: vec2<f32>) -> f32 {
+    let chord = area_of(conic.p1, conic.p3, q);
+    let area = area_of(conic.p1, conic.p2, conic.p3);
+    let across = slope_of(conic.p1, conic.p3, scale);
+    if conic.rho == 0.0 || area == 0.0 {
+        return off_by(chord, across);
+    }
+    let side = sign(area);
+    let l1 = side * area_of(conic.p2, conic.p3, q);
+    let l2 = -side * chord;
+    let l3 = side * area_of(conic.p1, conic.p2, q);
+    let outer = (1.0 - conic.rho) * (1.0 - conic.rho);
+    let inner = 4.0 * conic.rho * conic.rho;
+    let tangents = l1 * slope_of(conic.p1, conic.p2, scale) + l3 * slope_of(conic.p2, conic.p3, scale);
+    let off = off_by(outer * l2 * l2 - inner * l1 * l3, -2.0 * outer * l2 * across - inner * tangents);
+    return select(NOT_NEAR, off, l1 > 0.0 && l2 > 0.0 && l3 > 0.0);
+}
+
+// How far a place lies from the nearest of a splat's curves.
+fn from_clips(first: u32, count: u32, q: vec2<f32>, scale: vec2<f32>) -> f32 {
+    var least = NOT_NEAR;
+    for (var n = first; n < first + count; n++) {
+        least = min(least, distance_from(conics[n], q, scale));
+    }
+    return least;
+}
+
 // Whether any of a splat's curves cuts the place away.
 fn clipped_away(first: u32, count: u32, q: vec2<f32>) -> bool {
     for (var n = first; n < first + count; n++) {

@@ -25,6 +25,13 @@ pub fn depth_band(band: f64, normal: DVec3, direction: DVec3) -> f64 {
     band / along.max(COSINE_FLOOR * direction.length())
 }
 
+/// By which share of all that it may, a place so far from the nearest clip curve gives way: 1 on the curve,
+/// 0 from `reach` on.
+#[must_use]
+pub fn yield_share(distance: f64, reach: f64) -> f64 {
+    (1.0 - distance / reach).max(0.0)
+}
+
 /// A normal turned towards the eye.
 #[must_use]
 pub fn face(normal: DVec3, direction: DVec3) -> DVec3 {

@@ -11,6 +11,11 @@ fn depth_band(normal: vec3<f32>, direction: vec3<f32>) -> f32 {
     return eye.band / max(abs(dot(normal, direction)), COSINE_FLOOR * length(direction));
 }
 
+// By which share of all that it may, a place so far from the nearest clip curve gives way.
+fn yield_share(distance: f32) -> f32 {
+    return max(1.0 - distance / eye.yielding, 0.0);
+}
+
 // A normal turned towards the eye.
 fn face(normal: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
     return select(normal, -normal, dot(normal, direction) > 0.0);

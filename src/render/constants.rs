@@ -15,6 +15,16 @@ pub const BAND_ERRORS: f64 = 4.0;
 /// Least depth band, as a fraction of the diagonal: above the rounding of the 32-bit twin.
 pub const BAND_FLOOR: f64 = 2e-6;
 
+/// A place this near to a clip curve, in error bounds, may lie beyond the line that the curve lies outside
+/// of, and gives way: else each side of a convex edge would stand out as a rim over the other. The nearer to
+/// the curve, the deeper a place of another splat may lie that is seen instead, so that between the curves of
+/// two sides the middle is the edge.
+pub const YIELD_ERRORS: f64 = 1.0;
+
+/// Share of the band by which what lies on a clip curve gives way: twice as much as two splats may stand
+/// apart there.
+pub const YIELD_SHARE: f64 = 0.5;
+
 /// Least cosine between ray and normal by which the band is divided.
 ///
 /// Near a silhouette the band along the ray would grow without bound and reach another
@@ -81,6 +91,12 @@ pub fn band(asset: &Asset) -> f64 {
     (BAND_ERRORS * asset.max_error).max(BAND_FLOOR * asset.diagonal)
 }
 
+/// How near to a clip curve what a splat shows gives way, in model units.
+#[must_use]
+pub fn yielding(asset: &Asset) -> f64 {
+    YIELD_ERRORS * asset.max_error
+}
+
 /// Cosine of [`AGREE_DEGREES`].
 #[must_use]
 pub fn agree_cosine() -> f64 {
@@ -94,6 +110,7 @@ pub fn wgsl() -> String {
         ("COSINE_FLOOR", COSINE_FLOOR),
         ("AGREE_COSINE", agree_cosine()),
         ("RIM_WEIGHT", RIM_WEIGHT),
+        ("YIELD_SHARE", YIELD_SHARE),
         ("BOUND_PAD", BOUND_PAD),
         ("NORMAL_TIE", NORMAL_TIE),
         ("DEPTH_GREY_NEAR", DEPTH_GREY[0]),

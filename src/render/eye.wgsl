@@ -31,7 +31,8 @@ struct Eye {
     diffuse: f32,
     specular: f32,
     wrap: f32,
-    _pad: f32,
+    // How near to a clip curve a place gives way.
+    yielding: f32,
 }
 
 @group(0) @binding(0) var<uniform> eye: Eye;

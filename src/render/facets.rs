@@ -58,7 +58,7 @@ impl Scene for Facets<'_> {
         let at = DVec2::new(wb, wc) / total;
         let depth =
             corners[0].z + at.x * (corners[1].z - corners[0].z) + at.y * (corners[2].z - corners[0].z);
-        (depth >= self.eye.near).then_some(Hit { depth, at, ellipse: 0.0 })
+        (depth >= self.eye.near).then_some(Hit { depth, at, ellipse: 0.0, gives_way: 0.0 })
     }
 
     fn look(&self, item: usize, at: DVec2) -> Look {

@@ -268,7 +268,12 @@ impl Scene for Discs<'_> {
         }
         let ellipse = (lateral + s * ray.direction()).length_squared() / (self.radius * self.radius);
         let depth = center.z + s;
-        (ellipse <= 1.0 && depth >= self.eye.near).then_some(Hit { depth, at: DVec2::ZERO, ellipse })
+        (ellipse <= 1.0 && depth >= self.eye.near).then_some(Hit {
+            depth,
+            at: DVec2::ZERO,
+            ellipse,
+            gives_way: 0.0,
+        })
     }
 
     fn look(&self, item: usize, _at: DVec2) -> Look {

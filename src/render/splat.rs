@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::composite;
 use super::constants::{self, MATTE};
 use super::eye::{Eye, Ray};
 use super::partner::{self, LocalPartner, locals};
@@ -40,6 +41,10 @@ struct Cap {
 pub struct Caps<'a> {
     eye: &'a Eye,
     caps: Vec<Cap>,
+    /// How near to a clip curve a place gives way.
+    yielding: f64,
+    /// How far along the normal it does on the curve.
+    gives_way: f64,
 }
 
 /// A clip curve over the unit disc, to which the inside test is indifferent: an affine map
@@ -114,7 +119,13 @@ impl Cap {
         let inside = ellipse <= 1.0
             && !self.clips.iter().any(|clip| clip.cuts(unit))
             && !partner::clipped_away(&self.partners, ray.at(s));
-        inside.then_some(Hit { depth: self.center.z + s, at: uv, ellipse })
+        inside.then(|| Hit { depth: self.center.z + s, at: uv, ellipse, gives_way: 0.0 })
+    }
+
+    /// How far a place of the splat lies from the nearest clip curve.
+    fn from_clips(&self, at: DVec2) -> f64 {
+        let distance = |clip: &Conic| clip.distance(at * self.inverse_radii, self.radii);
+        self.clips.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -123,7 +134,8 @@ impl<'a> Caps<'a> {
     #[must_use]
     pub fn new(asset: &Asset, eye: &'a Eye) -> Self {
         let caps = asset.splats.par_iter().map(|splat| Cap::new(splat, eye, asset.has_colors)).collect();
-        Self { eye, caps }
+        let gives_way = constants::YIELD_SHARE * constants::band(asset);
+        Self { eye, caps, yielding: constants::yielding(asset), gives_way }
     }
 }
 
@@ -145,12 +157,19 @@ impl Scene for Caps<'_> {
         let local =
             LocalRay { origin: cap.to_local(lateral.extend(0.0)), direction: cap.to_local(ray.direction()) };
         let hit = |s: f64| cap.covered(&local, s);
-        if cap.curvature == DVec2::ZERO {
+        let found = if cap.curvature == DVec2::ZERO {
             hit(intersect::plane_root(&local, cap.reach))
         } else {
             let [first, second] = intersect::quadric_roots(cap.curvature, &local, cap.reach);
             hit(first).or_else(|| hit(second))
+        }?;
+        let share = composite::yield_share(cap.from_clips(found.at), self.yielding);
+        if share == 0.0 {
+            return Some(found);
         }
+        let normal = self.look(item, found.at).normal;
+        let gives_way = share * composite::depth_band(self.gives_way, normal, ray.direction());
+        Some(Hit { gives_way, ..found })
     }
 
     fn look(&self, item: usize, at: DVec2) -> Look {

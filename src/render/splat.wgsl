@@ -132,9 +132,18 @@ fn normal_at(cap: Cap, uv: vec2<f32>, direction: vec3<f32>) -> vec3<f32> {
 //#end
 }
 
+// By which share of all that it may, a hit gives way to what lies deeper.
+fn gives_way(cap: Cap, hit: Hit) -> f32 {
+//#if CLIPPED
+    return yield_share(from_clips(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy));
+//#else
+    return 0.0;
+//#end
+}
+
 struct Visible {
     @builtin(frag_depth) depth: f32,
-    // Unit normal and depth.
+    // Normal and depth. The normal is longer than one unit by the share by which it gives way.
     @location(0) surface: vec4<f32>,
     // Index and colour by kind, plus 1 so that 0 is nothing.
     @location(1) word: u32,
@@ -149,8 +158,12 @@ fn visibility(cap: Cap) -> Visible {
         discard;
     }
     let direction = vec3<f32>(ray.slope, 1.0);
-    let along = (hit.depth - eye.depth_range.x) / (eye.depth_range.y - eye.depth_range.x);
-    return Visible(along, vec4<f32>(normal_at(cap, hit.uv, direction), hit.depth), cap.words.x + 1u);
+    let normal = normal_at(cap, hit.uv, direction);
+    let share = gives_way(cap, hit);
+    let order = hit.depth + share * YIELD_SHARE * depth_band(normal, direction);
+    let along = (order - eye.depth_range.x) / (eye.depth_range.y - eye.depth_range.x);
+    let surface = vec4<f32>((1.0 + share) * normal, hit.depth);
+    return Visible(along, surface, cap.words.x + 1u);
 }
 
 @group(1) @binding(0) var surfaces: texture_2d<f32>;
@@ -163,8 +176,11 @@ struct Sums {
 //#end
 }
 
+// Above what the length of a normal is rounded by.
+const SHARE_ROUNDING: f32 = 1e-5;
+
 // The hit of a splat that belongs to the visible surface: within the band behind the nearest
-// hit, and facing the same way.
+// hit, facing the same way, and on the same side of lines.
 struct Part {
     found: bool,
     ellipse: f32,
@@ -173,14 +189,18 @@ struct Part {
 
 fn part(cap: Cap) -> Part {
     let ray = ray_through(cap.position.xy);
-    let visible = textureLoad(surfaces, vec2<u32>(cap.position.xy), 0);
+    let surface = textureLoad(surfaces, vec2<u32>(cap.position.xy), 0);
+    let share = length(surface.xyz) - 1.0;
+    let visible = normalize(surface.xyz);
     let hit = hit(cap, ray);
     let direction = vec3<f32>(ray.slope, 1.0);
-    if !hit.found || hit.depth > visible.w + depth_band(visible.xyz, direction) {
+    // What gives way is of the other side of an edge, or of this one and no better.
+    let better = hit.found && gives_way(cap, hit) <= share + SHARE_ROUNDING;
+    if !better || hit.depth > surface.w + depth_band(visible, direction) {
         return Part(false, 0.0, vec3<f32>(0.0));
     }
     let normal = normal_at(cap, hit.uv, direction);
-    return Part(dot(normal, visible.xyz) >= AGREE_COSINE, hit.ellipse, normal);
+    return Part(dot(normal, visible) >= AGREE_COSINE, hit.ellipse, normal);
 }
 
 // Pass 2: the weighted sums over the visible surface.

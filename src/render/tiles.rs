@@ -22,6 +22,15 @@ pub struct Hit {
     pub at: DVec2,
     /// Squared distance from the item's centre, 1 at its rim; 0 for items without a centre.
     pub ellipse: f64,
+    /// How much deeper another hit may lie and still be seen instead; 0 but beside a clip curve.
+    pub gives_way: f64,
+}
+
+impl Hit {
+    /// The depth by which it is seen or not.
+    fn order(&self) -> f64 {
+        self.depth + self.gives_way
+    }
 }
 
 /// What an item looks like at a hit.
@@ -52,7 +61,7 @@ pub trait Scene: Sync {
 /// A pixel's surface, in view coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Pixel {
-    /// The item that was hit first, or after blending the one seen nearest its centre.
+    /// The item that was hit first, not counting what gives way, or after blending the one seen nearest its centre.
     pub item: usize,
     /// View depth of the first hit.
     pub depth: f64,
@@ -64,6 +73,8 @@ pub struct Pixel {
     pub direction: DVec3,
     /// Items that the ray met, at any depth.
     pub met: u32,
+    /// [`Hit::gives_way`] of the first hit.
+    pub gives_way: f64,
 }
 
 /// How the hits of one pixel come together.
@@ -216,7 +227,7 @@ impl Tile<'_> {
         rect.samples_in(&self.area, |place, sample| visit(place, &self.eye.ray_through(sample)));
     }
 
-    /// The nearest hit of each pixel; of equally near ones, the first.
+    /// The nearest hit of each pixel, unless it gives way; of equally near ones, the first.
     fn visibility<S: Scene>(&self, scene: &S, rects: &[Rect], here: &[u32]) -> Vec<Option<Pixel>> {
         let count = (self.area.x[1] - self.area.x[0]) * (self.area.y[1] - self.area.y[0]);
         let mut nearest: Vec<Option<(Hit, usize)>> = vec![None; count as usize];
@@ -225,7 +236,7 @@ impl Tile<'_> {
             self.samples(&rects[item], |place, ray| {
                 let Some(hit) = scene.hit(item, ray) else { return };
                 met[place] += 1;
-                if nearest[place].is_none_or(|(old, _)| hit.depth < old.depth) {
+                if nearest[place].is_none_or(|(old, _)| hit.order() < old.order()) {
                     nearest[place] = Some((hit, item));
                 }
             });
@@ -235,7 +246,8 @@ impl Tile<'_> {
             pixels[place] = nearest[place].map(|(hit, item)| {
                 let (look, direction) = (scene.look(item, hit.at), ray.direction());
                 let normal = composite::face(look.normal, direction);
-                Pixel { item, depth: hit.depth, normal, color: look.color, direction, met: met[place] }
+                let Hit { depth, gives_way, .. } = hit;
+                Pixel { item, depth, normal, color: look.color, direction, met: met[place], gives_way }
             });
         });
         pixels
@@ -265,7 +277,8 @@ impl Tile<'_> {
             self.samples(&rects[item], |place, ray| {
                 let Some(pixel) = &pixels[place] else { return };
                 let Some(hit) = scene.hit(item, ray) else { return };
-                if hit.depth <= limits[place] {
+                // What gives way is of the other side of an edge, or of this one and no better.
+                if hit.depth <= limits[place] && hit.gives_way <= pixel.gives_way {
                     let look = scene.look(item, hit.at);
                     let normal = composite::face(look.normal, pixel.direction);
                     if normal.dot(pixel.normal) >= agree {

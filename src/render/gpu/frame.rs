@@ -31,7 +31,7 @@ pub fn draw(
     let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
     gpu.within("the picture's greater side in samples", u64::from(size[0].max(size[1])), limit)?;
     gpu.within("the number of samples", u64::from(size[0]) * u64::from(size[1]), MAX_SAMPLES)?;
-    let record = EyeRecord::new(&eye, scene.half_diagonal, scene.reach, scene.band, settings);
+    let record = EyeRecord::new(&eye, scene.half_diagonal, scene.reach, scene.widths, settings);
     gpu.queue.write_buffer(&scene.eye, 0, bytemuck::bytes_of(&record));
     let targets = Targets::new(gpu, size, scene.colored);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -72,7 +72,7 @@ pub struct EyeRecord {
     diffuse: f32,
     specular: f32,
     wrap: f32,
-    pad: f32,
+    yielding: f32,
 }
 
 const _: () = assert!(size_of::<SplatRecord>() == 88);
@@ -131,8 +131,15 @@ pub fn partners(splat: &Splat, partners: &mut Vec<PartnerRecord>) -> [u32; 2] {
 }
 
 impl EyeRecord {
-    /// A camera over an asset whose splats all lie within `radius` of the model's origin.
-    pub fn new(eye: &Eye, asset_radius: f64, radius: f64, band: f64, settings: &Settings) -> Self {
+    /// A camera over an asset whose splats all lie within `radius` of the model's origin; `band` and `yielding`
+    /// are those of [`constants`].
+    pub fn new(
+        eye: &Eye,
+        asset_radius: f64,
+        radius: f64,
+        [band, yielding]: [f64; 2],
+        settings: &Settings,
+    ) -> Self {
         let anchor_depth = eye.to_view(DVec3::ZERO).z.max(0.0);
         let [anchor_high, anchor_low] = split(eye.position + anchor_depth * eye.forward);
         let relative = |range: [f64; 2]| range.map(|depth| (depth - anchor_depth) as f32);
@@ -159,13 +166,15 @@ impl EyeRecord {
             diffuse: light.diffuse as f32,
             specular: light.specular as f32,
             wrap: light.wrap as f32,
-            pad: 0.0,
+            yielding: yielding as f32,
         }
     }
 }
 
-/// Radius of a sphere around the model's origin that holds every splat.
+/// Radius of a sphere around the model's origin that holds every splat, and whatever deeper place one that
+/// gives way takes.
 pub fn reach(asset: &Asset) -> f64 {
     let reach = |splat: &Splat| splat.center.length() + splat.bounding_radius();
-    asset.splats.iter().map(reach).fold(0.5 * asset.diagonal, f64::max)
+    let gives_way = constants::YIELD_SHARE * constants::band(asset) / constants::COSINE_FLOOR;
+    asset.splats.iter().map(reach).fold(0.5 * asset.diagonal, f64::max) + gives_way
 }

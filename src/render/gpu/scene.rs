@@ -20,8 +20,8 @@ pub struct Scene {
     pub half_diagonal: f64,
     /// Radius around the model's origin that holds every splat.
     pub reach: f64,
-    /// Thickness of a surface.
-    pub band: f64,
+    /// Thickness of a surface, and how near to a clip curve it gives way.
+    pub widths: [f64; 2],
     /// Whether colours are blended.
     pub colored: bool,
     /// The splats, class by class.
@@ -109,7 +109,7 @@ impl Scene {
             frame: asset.frame,
             half_diagonal: 0.5 * asset.diagonal,
             reach: records::reach(asset),
-            band: constants::band(asset),
+            widths: [constants::band(asset), constants::yielding(asset)],
             colored: asset.has_colors,
             splats,
             partners,
