@@ -69,7 +69,7 @@ fn distance_from(conic: Conic, q: vec2<f32>, scale: vec2<f32>) -> f32 {
 }
 
 // How far a place lies from the nearest of a splat's curves.
-fn from_clips(first: u32, count: u32, q: vec2<f32>, scale: vec2<f32>) -> f32 {
+fn clearance(first: u32, count: u32, q: vec2<f32>, scale: vec2<f32>) -> f32 {
     var least = NOT_NEAR;
     for (var n = first; n < first + count; n++) {
         least = min(least, distance_from(conics[n], q, scale));

@@ -119,11 +119,11 @@ impl Cap {
         let inside = ellipse <= 1.0
             && !self.clips.iter().any(|clip| clip.cuts(unit))
             && !partner::clipped_away(&self.partners, ray.at(s));
-        inside.then(|| Hit { depth: self.center.z + s, at: uv, ellipse, gives_way: 0.0 })
+        inside.then_some(Hit { depth: self.center.z + s, at: uv, ellipse, gives_way: 0.0 })
     }
 
     /// How far a place of the splat lies from the nearest clip curve.
-    fn from_clips(&self, at: DVec2) -> f64 {
+    fn clearance(&self, at: DVec2) -> f64 {
         let distance = |clip: &Conic| clip.distance(at * self.inverse_radii, self.radii);
         self.clips.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
@@ -163,7 +163,7 @@ impl Scene for Caps<'_> {
             let [first, second] = intersect::quadric_roots(cap.curvature, &local, cap.reach);
             hit(first).or_else(|| hit(second))
         }?;
-        let share = composite::yield_share(cap.from_clips(found.at), self.yielding);
+        let share = composite::yield_share(cap.clearance(found.at), self.yielding);
         if share == 0.0 {
             return Some(found);
         }

@@ -135,7 +135,7 @@ fn normal_at(cap: Cap, uv: vec2<f32>, direction: vec3<f32>) -> vec3<f32> {
 // By which share of all that it may, a hit gives way to what lies deeper.
 fn gives_way(cap: Cap, hit: Hit) -> f32 {
 //#if CLIPPED
-    return yield_share(from_clips(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy));
+    return yield_share(clearance(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy));
 //#else
     return 0.0;
 //#end
