@@ -44,28 +44,35 @@ fn slope_of(a: vec2<f32>, b: vec2<f32>, scale: vec2<f32>) -> vec2<f32> {
 // Farther than any place is from a curve.
 const NOT_NEAR: f32 = 1e30;
 
-fn off_by(f: f32, gradient: vec2<f32>) -> f32 {
-    let steep = length(gradient);
-    return select(NOT_NEAR, abs(f) / steep, steep > 0.0);
+fn off_by(f: f32, slope: vec2<f32>) -> f32 {
+    let steep = length(slope);
+    return select(select(sign(f) * NOT_NEAR, f / steep, steep > 0.0), 0.0, f == 0.0);
 }
 
 // How far a place lies from the curve; twin of `Conic::distance`, which explains it.
 fn distance_from(conic: Conic, q: vec2<f32>, scale: vec2<f32>) -> f32 {
-    let chord = area_of(conic.p1, conic.p3, q);
+    let s1 = slope_of(conic.p2, conic.p3, scale);
+    let s2 = slope_of(conic.p3, conic.p1, scale);
+    let s3 = slope_of(conic.p1, conic.p2, scale);
     let area = area_of(conic.p1, conic.p2, conic.p3);
-    let across = slope_of(conic.p1, conic.p3, scale);
+    let chord = area_of(conic.p3, conic.p1, q);
     if conic.rho == 0.0 || area == 0.0 {
-        return off_by(chord, across);
+        return off_by(abs(chord), s2);
     }
     let side = sign(area);
     let l1 = side * area_of(conic.p2, conic.p3, q);
-    let l2 = -side * chord;
+    let l2 = side * chord;
     let l3 = side * area_of(conic.p1, conic.p2, q);
-    let outer = (1.0 - conic.rho) * (1.0 - conic.rho);
-    let inner = 4.0 * conic.rho * conic.rho;
-    let tangents = l1 * slope_of(conic.p1, conic.p2, scale) + l3 * slope_of(conic.p2, conic.p3, scale);
-    let off = off_by(outer * l2 * l2 - inner * l1 * l3, -2.0 * outer * l2 * across - inner * tangents);
-    return select(NOT_NEAR, off, l1 > 0.0 && l2 > 0.0 && l3 > 0.0);
+    let outside = max(max(off_by(-l1, s1), off_by(-l2, s2)), off_by(-l3, s3));
+    let chordal = (1.0 - conic.rho) * l2;
+    let product = 4.0 * conic.rho * conic.rho * l1 * l3;
+    let curved = sqrt(max(product, 0.0));
+    let level = (1.0 - conic.rho) * s2;
+    let bent = 2.0 * conic.rho * conic.rho * (l1 * s3 + l3 * s1);
+    if conic.rho <= 0.5 && curved > 0.0 && chordal < curved {
+        return max(off_by(curved - chordal, bent / curved - level), outside);
+    }
+    return max(off_by(abs(chordal * chordal - product), 2.0 * (chordal * level - bent)), outside);
 }
 
 // How far a place lies from the nearest of a splat's curves.
