@@ -11,7 +11,8 @@ use super::sets::Sets;
 const RAGGED: f64 = 0.34;
 
 /// A chain of fewer edges than this that ends inside the surface, or closes on itself
-/// without meeting another, says nothing.
+/// without meeting another, says nothing. One that runs from border to border, as the ridge of two
+/// triangles does, parts the surface however few its edges are.
 const SHORTEST: usize = 4;
 
 /// Rounds of dropping chains; each may join others or leave them with a loose end.
@@ -23,7 +24,7 @@ pub struct Chain {
     /// Its edges, in order.
     pub edges: Vec<u32>,
     vertices: Vec<u32>,
-    /// Whether an end meets no other marked edge.
+    /// Whether it ends inside the surface: an end meets neither another marked edge nor a border.
     loose: bool,
 }
 
@@ -90,28 +91,55 @@ pub fn chains(vertices: usize, edges: &Edges, marked: &[bool]) -> Vec<Chain> {
     for &(vertex, _) in &around {
         degree[vertex as usize] += 1;
     }
+    let ends = Ends { degree, at_border: at_border(vertices, edges) };
     let mut used = vec![false; edges.edges.len()];
     let mut found = Vec::new();
     // First from the ends and joints, then whatever closes on itself.
     for joints in [true, false] {
         for &(vertex, edge) in &around {
-            if (degree[vertex as usize] == 2) != joints && !used[edge as usize] {
-                found.push(walk(edges, &around, &degree, &mut used, vertex, edge));
+            if ends.joins_two(vertex) != joints && !used[edge as usize] {
+                found.push(walk(edges, &around, &ends, &mut used, vertex, edge));
             }
         }
     }
     found
 }
 
+/// For each vertex, whether the surface ends there.
+fn at_border(vertices: usize, edges: &Edges) -> Vec<bool> {
+    let mut at_border = vec![false; vertices];
+    for edge in edges.edges.iter().filter(|edge| edges.pair(edge).is_none()) {
+        edge.ends.iter().for_each(|&end| at_border[end as usize] = true);
+    }
+    at_border
+}
+
+/// Where chains end, and where they end loosely.
+struct Ends {
+    /// For each vertex, how many marked edges meet there.
+    degree: Vec<u32>,
+    at_border: Vec<bool>,
+}
+
+impl Ends {
+    fn joins_two(&self, vertex: u32) -> bool {
+        self.degree[vertex as usize] == 2
+    }
+
+    fn are_loose(&self, vertex: u32) -> bool {
+        self.degree[vertex as usize] == 1 && !self.at_border[vertex as usize]
+    }
+}
+
 fn walk(
     edges: &Edges,
     around: &[(u32, u32)],
-    degree: &[u32],
+    ends: &Ends,
     used: &mut [bool],
     start: u32,
     first: u32,
 ) -> Chain {
-    let mut chain = Chain { edges: Vec::new(), vertices: vec![start], loose: degree[start as usize] == 1 };
+    let mut chain = Chain { edges: Vec::new(), vertices: vec![start], loose: ends.are_loose(start) };
     let (mut vertex, mut edge) = (start, first);
     loop {
         used[edge as usize] = true;
@@ -119,8 +147,8 @@ fn walk(
         let [a, b] = edges.edges[edge as usize].ends;
         vertex = if a == vertex { b } else { a };
         chain.vertices.push(vertex);
-        if degree[vertex as usize] != 2 {
-            chain.loose |= degree[vertex as usize] == 1;
+        if !ends.joins_two(vertex) {
+            chain.loose |= ends.are_loose(vertex);
             return chain;
         }
         let from = around.partition_point(|entry| entry.0 < vertex);
@@ -135,27 +163,39 @@ fn walk(
 mod tests {
     use super::*;
 
-    /// A strip of triangles over two rows of points; its inner line runs along row 0.
-    fn strip(heights: &[f32]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-        let row = |n: usize| Vec3::new(n as f32, heights[n], 0.0);
-        let count = heights.len() as u32;
-        let positions = (0..heights.len())
-            .map(row)
-            .chain((0..heights.len()).map(|n| Vec3::new(n as f32, 0.0, 5.0)))
+    /// Three rows of points, and the triangles between them; the line that is marked runs along the
+    /// middle row, through columns that rise by some heights, and `beyond` as many columns lie before
+    /// and after it.
+    fn sheet(heights: &[f32], beyond: usize) -> (Vec<Vec3>, Edges, Vec<bool>) {
+        let (count, across) = (heights.len(), heights.len() + 2 * beyond);
+        let height = |n: usize| heights[n.clamp(beyond, beyond + count - 1) - beyond];
+        let row = |z: f32| (0..across).map(move |n| Vec3::new(n as f32, height(n), z));
+        let positions = [-5.0, 0.0, 5.0].into_iter().flat_map(row).collect();
+        let across = across as u32;
+        let triangles: Vec<[u32; 3]> = (0..2 * across)
+            .filter(|n| n % across + 1 < across)
+            .flat_map(|n| [[n, n + 1, across + n], [n + 1, across + n + 1, across + n]])
             .collect();
-        let triangles =
-            (0..count - 1).flat_map(|n| [[n, n + 1, count + n], [n + 1, count + n + 1, count + n]]).collect();
-        (positions, triangles)
+        let edges = Edges::of(&triangles);
+        let line = across + beyond as u32..across + (beyond + count) as u32;
+        let marked = edges.edges.iter().map(|edge| edge.ends.iter().all(|end| line.contains(end))).collect();
+        (positions, edges, marked)
+    }
+
+    fn kept_of(heights: &[f32], beyond: usize) -> usize {
+        let (positions, edges, mut marked) = sheet(heights, beyond);
+        drop_ragged(&positions, &edges, &mut marked);
+        marked.iter().filter(|mark| **mark).count()
     }
 
     fn kept(heights: &[f32]) -> usize {
-        let (positions, triangles) = strip(heights);
-        let edges = Edges::of(&triangles);
-        let row = heights.len() as u32;
-        let mut marked: Vec<bool> =
-            edges.edges.iter().map(|edge| edge.ends[0] < row && edge.ends[1] < row).collect();
-        drop_ragged(&positions, &edges, &mut marked);
-        marked.iter().filter(|mark| **mark).count()
+        kept_of(heights, 1)
+    }
+
+    #[test]
+    fn a_line_of_few_edges_stays_where_it_ends_at_borders() {
+        assert_eq!(kept_of(&[0.0; 2], 0), 1, "the ridge of a roof");
+        assert_eq!(kept_of(&[0.0; 2], 1), 0, "inside the surface");
     }
 
     #[test]
