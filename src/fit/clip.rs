@@ -10,13 +10,13 @@ use glam::DVec2;
 
 use super::conic;
 use super::ellipse::{Run, angle, exit, holds, runs};
-use super::offset::outward;
+use super::offset::{CORNER_SINE, is_corner, outward};
 use crate::model::clip_curve::{ClipCurve, Conic, turn};
 
 /// How near a clip curve must follow its line, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipTolerance {
-    /// Curves follow the outline moved outward by this much.
+    /// Curves follow the outline moved outward by this much, or by less at acute corners.
     pub outset: f64,
     /// How far a curve may miss that; no more than `outset`, or it could cut the surface.
     pub miss: f64,
@@ -24,6 +24,8 @@ pub struct ClipTolerance {
     pub least: f64,
     /// How far from its line, in space, a curve of a splat that is done may lie.
     pub edge: f64,
+    /// How far rounding may still move a curve.
+    pub rounding: f64,
     /// Which curves may be used.
     pub clips: Clips,
 }
@@ -36,11 +38,27 @@ impl ClipTolerance {
         self.outset + 2.0 * self.miss
     }
 
+    /// By how much the sides of a convex corner may be moved whose mitre is so many times as long as
+    /// that: rounded, its tip must not lie beyond where a rounded curve may. `None` where they would come
+    /// as near to the outline as curves that miss may.
+    #[must_use]
+    pub fn beside_corner(&self, miter: f64) -> Option<f64> {
+        let by = ((self.edge + self.rounding) / miter - self.rounding).min(self.outset);
+        (by > self.outset - self.miss).then_some(by)
+    }
+
     /// A share of all of it.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
-        let &Self { outset, miss, least, edge, clips } = self;
-        Self { outset: share * outset, miss: share * miss, least: share * least, edge: share * edge, clips }
+        let &Self { outset, miss, least, edge, rounding, clips } = self;
+        Self {
+            outset: share * outset,
+            miss: share * miss,
+            least: share * least,
+            edge: share * edge,
+            rounding: share * rounding,
+            clips,
+        }
     }
 }
 
@@ -70,9 +88,6 @@ pub enum Care {
 /// Control points farther out than this many radii are refused: the file's grid ends there.
 const FARTHEST_CONTROL: f64 = 16.0;
 
-/// A polyline that turns by more than this at a vertex (sine of 15°) may have a corner there.
-const CORNER_SINE: f64 = 0.26;
-
 /// Where there are only chords, every left turn that one of them cannot follow is a corner.
 const STRAIGHT_CORNER_SINE: f64 = 0.0;
 
@@ -85,7 +100,7 @@ pub fn fit(
     tolerance: &ClipTolerance,
     care: Care,
 ) -> Option<Vec<ClipCurve>> {
-    let moved = outward(line, closed, tolerance.outset);
+    let moved = outward(line, closed, tolerance.outset, |miter| tolerance.beside_corner(miter));
     let mut clips = Vec::new();
     for run in runs(&moved, closed, radii)? {
         clips.extend(cut_run(&run, radii, tolerance, care)?);
@@ -190,7 +205,7 @@ fn split_at_convex_corners(run: &Run, sine: f64) -> Option<Vec<Vec<DVec2>>> {
     let is_corner = |n: usize| {
         let before = (points[n] - points[(n + count - 1) % count]).normalize_or_zero();
         let after = (points[(n + 1) % count] - points[n]).normalize_or_zero();
-        before.perp_dot(after) > sine || (before.dot(after) < 0.0 && before.perp_dot(after) > 0.0)
+        is_corner(before, after, sine)
     };
     if run.closed {
         let corners: Vec<usize> = (0..count).filter(|&n| is_corner(n)).collect();
@@ -258,10 +273,15 @@ pub fn follows(
 /// Fewest and most places looked at along a curve.
 const PLACES: (f64, f64) = (16.0, 256.0);
 
+/// Halvings of a step between two such places that find where the border leaves the curve: to a
+/// thousandth of a step, which is at most a few bounds long.
+const HALVINGS: usize = 10;
+
 /// Whether clip curves bound nothing but outlines: the other side of [`follows`].
 ///
 /// A place on a curve that no other curve cuts away is a border of what is kept. It must lie
-/// along an outline, or the splat would go on beyond its surface.
+/// along an outline, or the splat would go on beyond its surface. So must the tip where the border goes
+/// over to another curve: at an acute corner it lies farther out than all else.
 pub fn bounds_only(
     along: impl Fn(DVec2) -> bool,
     conics: &[Conic],
@@ -273,19 +293,44 @@ pub fn bounds_only(
         let length = conic.p1.distance(conic.p2) + conic.p2.distance(conic.p3);
         let length = if conic.rho == 0.0 { conic.p1.distance(conic.p3) } else { length };
         let step = apart.min(length / PLACES.0).max(length / PLACES.1);
-        conic.walk(step).into_iter().filter(|&p| holds(p, radii)).all(|p| {
-            let cut = conics.iter().enumerate().any(|(other, conic)| other != index && conic.cuts(p));
-            cut || along(p)
-        })
+        let bounds = |p: DVec2| {
+            holds(p, radii)
+                && !conics.iter().enumerate().any(|(other, conic)| other != index && conic.cuts(p))
+        };
+        let places: Vec<(DVec2, bool)> = conic.walk(step).into_iter().map(|p| (p, bounds(p))).collect();
+        let tips = places.windows(2).filter_map(|ends| match ends {
+            &[(kept, true), (cut, false)] | &[(cut, false), (kept, true)] => Some(tip(kept, cut, bounds)),
+            _ => None,
+        });
+        places.iter().filter(|(_, bounds)| *bounds).map(|(p, _)| *p).chain(tips).all(&along)
     })
+}
+
+/// The last place on the way from one to another that is a border.
+fn tip(mut kept: DVec2, mut cut: DVec2, bounds: impl Fn(DVec2) -> bool) -> DVec2 {
+    for _ in 0..HALVINGS {
+        let middle = kept.midpoint(cut);
+        if bounds(middle) {
+            kept = middle;
+        } else {
+            cut = middle;
+        }
+    }
+    kept
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const TOLERANCE: ClipTolerance =
-        ClipTolerance { outset: 0.002, miss: 0.002, least: 0.0, edge: 0.004, clips: Clips::Curved };
+    const TOLERANCE: ClipTolerance = ClipTolerance {
+        outset: 0.002,
+        miss: 0.0012,
+        least: 0.0,
+        edge: 0.0036,
+        rounding: 0.0004,
+        clips: Clips::Curved,
+    };
     const STRAIGHT: ClipTolerance = ClipTolerance { clips: Clips::Straight, ..TOLERANCE };
 
     fn check(line: &[DVec2], closed: bool, radii: DVec2) -> Option<usize> {
@@ -309,6 +354,42 @@ mod tests {
         assert!(follows(&|_| true));
         assert!(!follows(&|p| !(-0.7..-0.69).contains(&p.x)), "in the middle of an arm");
         assert!(!follows(&|p| p.distance(DVec2::NEG_X) > 1e-6), "where it meets the rim");
+    }
+
+    #[test]
+    fn a_tip_that_strays_between_the_places_of_a_walk_does_not_follow() {
+        // Two chords that meet at a corner of 53°, three misses beyond it.
+        let tip = DVec2::new(0.6 + 3.0 * TOLERANCE.miss, 0.0);
+        let chord = |from: DVec2, to: DVec2| Conic { p1: from, p2: from, p3: to, rho: 0.0 };
+        let out = |slope: f64| exit(tip, DVec2::new(1.0, slope), DVec2::ONE).unwrap_or(tip);
+        let back = |slope: f64| exit(tip, DVec2::new(-1.0, slope), DVec2::ONE).unwrap_or(tip);
+        let conics = [chord(back(-0.5), out(0.5)), chord(out(-0.5), back(0.5))];
+        let within = |far: f64| bounds_only(|p| p.x <= 0.6 + far, &conics, DVec2::ONE, &TOLERANCE);
+        assert!(within(3.01 * TOLERANCE.miss));
+        assert!(!within(2.99 * TOLERANCE.miss));
+    }
+
+    /// How far what is kept of a kite whose acute corner is at the middle lies from that corner, where
+    /// that is farther out than the corner, and by how many curves it is cut.
+    fn tip_of_kite(degrees: f64) -> (f64, usize) {
+        let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
+        let kite = [DVec2::ZERO, DVec2::new(cos, -sin), DVec2::new(cos + sin, 0.0), DVec2::new(cos, sin)];
+        let radii = DVec2::splat(2.0);
+        let clips = fit(&kite, true, radii, &TOLERANCE, Care::Nearest).unwrap_or_default();
+        let cuts = |p: DVec2| clips.iter().any(|clip| clip.cuts(p, radii));
+        assert!(follows(&kite, true, radii, cuts, &TOLERANCE), "{degrees}°");
+        let step = 0.01 * TOLERANCE.outset;
+        let places = (0..1000).map(|n| f64::from(n) * step).take_while(|x| !cuts(DVec2::new(-x, 0.0)));
+        (places.last().unwrap_or(f64::NAN), clips.len())
+    }
+
+    #[test]
+    fn the_tip_of_no_corner_lies_beyond_what_edges_may() {
+        for degrees in [20.0, 30.0, 36.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 72.0, 80.0, 90.0] {
+            let (tip, clips) = tip_of_kite(degrees);
+            assert!(tip > 0.0 && tip <= TOLERANCE.edge, "{degrees}°: {tip}");
+            assert_eq!(clips, if degrees < 35.0 { 5 } else { 4 }, "{degrees}°");
+        }
     }
 
     fn arc(radius: f64, center: DVec2, from: f64, to: f64) -> Vec<DVec2> {

@@ -62,6 +62,7 @@ impl Budget {
             miss: CLIP_MISS_SHARE * max_error,
             least: 0.0,
             edge: (1.0 - CLIP_QUANTIZE_SHARE) * max_error,
+            rounding: CLIP_QUANTIZE_SHARE * max_error,
             clips,
         };
         Self {
@@ -76,6 +77,7 @@ impl Budget {
                 miss: (CLIP_MISS_SHARE + CLIP_QUANTIZE_SHARE) * max_error,
                 least: CLIP_LEAST_SHARE * max_error,
                 edge: STORED_EDGE_SHARE * max_error,
+                rounding: 0.0,
                 ..clip
             },
         }
