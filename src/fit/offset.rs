@@ -41,12 +41,12 @@ pub fn outward(line: &[DVec2], closed: bool, by: f64, beside: impl Fn(f64) -> Op
         if turn.is_convex() && beside(turn.miter()).is_none() {
             moved.push(point + first * before + by * before.perp());
             moved.push(point + second * after - by * after.perp());
-        } else if first == second {
-            moved.push(point + first * turn.mitered());
-        } else {
+        } else if (first - second).abs() > 0.0 {
             // They differ at corners alone: there the two lines, each moved, do meet.
             let sine = before.perp_dot(after);
             moved.push(point + (second * before.perp() - first * after.perp()) / sine);
+        } else {
+            moved.push(point + first * turn.mitered());
         }
     }
     moved

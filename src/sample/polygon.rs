@@ -45,8 +45,7 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
             let cut = |splat: Splat| Some(Splat { clips: triangle(&splat).all()?, ..splat });
             let mut less = PADS.into_iter().filter_map(padded).filter_map(cut);
             let does = |less: &Splat| triangle(less).is_inside() && !triangle(less).strays(&less.clips);
-            let blunted = || Some(Splat { clips: triangle(&splat).blunted(&splat.clips)?, ..splat.clone() });
-            splat = less.find(does).or_else(blunted).unwrap_or(splat);
+            splat = less.find(does).unwrap_or(splat);
         }
     }
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
@@ -113,12 +112,12 @@ impl<'a> Triangle<'a> {
 
     /// Whether it is cut along all its sides, and what is left goes on beyond it too far.
     fn strays(&self, clips: &[ClipCurve]) -> bool {
-        self.all().is_some_and(|all| all == clips) && !self.far(clips).is_empty()
+        self.all().is_some_and(|all| all == clips) && self.goes_far(clips)
     }
 
-    /// Places on the border of what clip curves leave that lie farther beyond it than a rim may, or where
-    /// it touches a line farther than a cut may.
-    fn far(&self, clips: &[ClipCurve]) -> Vec<DVec2> {
+    /// Whether the border of what clip curves leave goes farther beyond it than a rim may, or where it
+    /// touches a line farther than a cut may.
+    fn goes_far(&self, clips: &[ClipCurve]) -> bool {
         let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
         let corners = self.outline().map(|corner| corner.extend(0.0));
         let kept = |own: usize, uv: &DVec2| {
@@ -131,27 +130,7 @@ impl<'a> Triangle<'a> {
         let Budget { rim, clip, .. } = self.grower.budget;
         let lined = self.corners.iter().any(|&corner| self.grower.surface.on_border(corner));
         let most = if lined { clip.edge } else { rim };
-        let far = |uv: &DVec2| to_triangle(corners, uv.extend(0.0)).length() > most;
-        places.chain(tips).filter(far).collect()
-    }
-
-    /// The same clip curves, and a chord across each corner beyond which what they leave lies too far;
-    /// `None` if that does not help.
-    fn blunted(&self, clips: &[ClipCurve]) -> Option<Vec<ClipCurve>> {
-        let (outline, far) = (self.outline(), self.far(clips));
-        let nearest = |uv: &DVec2| {
-            let distance = |n: &usize| outline[*n].distance_squared(*uv);
-            (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        };
-        let mut blunted = clips.to_vec();
-        for corner in (0..3).filter(|&corner| far.iter().any(|uv| nearest(uv) == Some(corner))) {
-            let [from, to] =
-                [1, 2].map(|n| (outline[corner] - outline[(corner + n) % 3]).normalize_or_zero());
-            // Across the way out, the triangle on its left.
-            let across = 2.0 * self.radii.max_element() * (from + to).normalize_or_zero().perp();
-            blunted.extend(self.fitted(&[outline[corner] - across, outline[corner] + across], false)?);
-        }
-        self.far(&blunted).is_empty().then_some(blunted)
+        places.chain(tips).any(|uv| to_triangle(corners, uv.extend(0.0)).length() > most)
     }
 
     fn outline(&self) -> [DVec2; 3] {
@@ -270,7 +249,7 @@ mod tests {
 
     #[test]
     fn beyond_acute_corners_no_more_stands_out_than_at_cuts() {
-        let (mut less_padded, mut blunted) = (0, 0);
+        let mut less_padded = 0;
         // As far as the file's grids may move a splat.
         let moved = |splat: &Splat| splat.center + QUANTIZE_SHARE * BOUND * splat.axes.x_axis;
         let round = |splat: &Splat| Some(Splat { center: moved(splat), ..splat.clone() });
@@ -286,8 +265,6 @@ mod tests {
             let (_, least) = circumellipse(corners.map(|corner| corner.truncate()));
             less_padded +=
                 u32::from(splat.radii.max_element() < least.max_element() + 0.9 * grower.budget.pad);
-            let all = Triangle::below(&splat, &grower, surface.pieces[0]).all().unwrap();
-            blunted += u32::from(splat.clips.len() > all.len());
             let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
             let grid =
                 (-50..=50).flat_map(|i| (-50..=50).map(move |j| DVec2::new(i.into(), j.into()) / 50.0));
@@ -297,7 +274,7 @@ mod tests {
                 assert!(out <= BOUND, "{n}: {out}");
             }
         }
-        assert!(less_padded > 0 && blunted > 0, "no corner was acute enough: {less_padded}, {blunted}");
+        assert!(less_padded > 0, "no corner was acute enough");
     }
 
     /// How many chords the splat over a triangle in the middle of a grid of unit cells has: the grid

@@ -12,8 +12,11 @@ use super::views;
 /// Share of the diagonal.
 const BOUND: f64 = 1e-3;
 
-/// Bakes a shape; its faults.
-fn check(Shape { name, input, edges }: Shape) -> Vec<String> {
+/// A facet takes at most so many splats on the average: one, but for what views ask to mend.
+const SPLATS_A_FACET: usize = 2;
+
+/// Bakes a shape; its faults, and how many splats it takes.
+fn check(Shape { name, input, edges }: Shape) -> (Vec<String>, usize) {
     let Input::Mesh(mesh) = &input else { panic!("{name} is a mesh") };
     let max_error = MaxError::Relative(BOUND);
     let (delivery, found) = measured(&input, &Options { max_error, edges, ..Options::default() });
@@ -21,11 +24,20 @@ fn check(Shape { name, input, edges }: Shape) -> Vec<String> {
     let seen = views::compare(mesh, &delivery.asset, SIDE);
     eprintln!("{name}: {found}\n    {seen}");
     let faults = found.faults().into_iter().chain(seen.faults());
-    faults.map(|fault| format!("{name}: {fault}")).collect()
+    (faults.map(|fault| format!("{name}: {fault}")).collect(), delivery.asset.splats.len())
 }
 
 #[test]
 fn lines_that_one_curve_cannot_follow_keep_every_bound() {
-    let faults: Vec<String> = shapes::all().into_iter().flat_map(check).collect();
+    let faults: Vec<String> = shapes::all().into_iter().flat_map(|shape| check(shape).0).collect();
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+}
+
+#[test]
+fn ridges_between_a_few_large_facets_are_found() {
+    for (shape, facets) in shapes::fans() {
+        let (faults, splats) = check(shape);
+        assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+        assert!(splats <= SPLATS_A_FACET * facets, "{splats} splats for {facets} facets");
+    }
 }

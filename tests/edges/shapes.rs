@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DQuat, DVec2, DVec3, EulerRot, Vec3};
 use qsplat::bake::Edges;
 use qsplat::ingest::Input;
 use qsplat::model::cloud::Cloud;
@@ -127,6 +127,18 @@ impl Corner {
         (0.5 * DVec2::from_angle(TAU * f64::from(n % self.lines) / f64::from(self.lines))).extend(height)
     }
 
+    /// Triangles around it, or the first few of them, somehow turned: ridges that end at the rim, and
+    /// corners there that are acute. Its lines are found.
+    fn fan(&self, faces: u32) -> Shape {
+        let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.5, 0.7);
+        let mut surface = Surface::default();
+        for n in 0..faces {
+            let corners = [self.apex, self.rim(n), self.rim(n + 1)].map(|p| surface.vertex(turn * p));
+            surface.triangle(corners, false);
+        }
+        shape(&format!("{faces} facets around a corner of {} lines", self.lines), &surface)
+    }
+
     /// Four-cornered faces around it, none of whose other corners is acute, its lines given.
     fn open(&self) -> Shape {
         let mut surface = Surface::default();
@@ -154,6 +166,24 @@ impl Corner {
         }
         shape(&format!("a corner of {} lines found", self.lines), &surface)
     }
+}
+
+/// Flat kites beside each other, each with a corner more acute than the last.
+fn kites() -> Shape {
+    let mut surface = Surface::default();
+    for n in 0..9_u32 {
+        let (sin, cos) = libm::sincos(0.5 * f64::from(30 + 5 * n).to_radians());
+        let center = 2.0 * DVec2::new(f64::from(n % 3), f64::from(n / 3));
+        let place = |x: f64, y: f64| {
+            let turned = DVec2::from_angle(0.7 * f64::from(n)).rotate(DVec2::new(x - 0.5, y));
+            (center + turned).extend(0.0)
+        };
+        let corners = [(0.0, 0.0), (cos, -sin), (cos + 0.8 * sin, 0.0), (cos, sin)];
+        let [tip, right, back, left] = corners.map(|(x, y)| surface.vertex(place(x, y)));
+        surface.triangle([tip, right, back], false);
+        surface.triangle([tip, back, left], false);
+    }
+    shape("acute corners of 30 to 70 degrees", &surface)
 }
 
 /// A block with a round step in its upper side, up or down: its rim is a loop inside a splat.
@@ -204,8 +234,15 @@ pub fn all() -> Vec<Shape> {
         loop_in_a_face("a disc smaller than a splat", 0.05),
         dart("a line given that ends inside", true),
         dart("a line found that ends inside", false),
+        kites(),
     ];
     all.extend([3, 4, 6, 12].map(|lines| Corner::new(lines).open()));
-    all.extend([4, 12].map(|lines| Corner::new(lines).closed()));
+    all.extend([3, 4, 6, 12].map(|lines| Corner::new(lines).closed()));
     all
+}
+
+/// Open surfaces of a few large facets, and how many these are.
+pub fn fans() -> Vec<(Shape, usize)> {
+    let fan = |lines: u32, faces: u32| (Corner::new(lines).fan(faces), faces as usize);
+    [(3, 2), (3, 3), (4, 4), (5, 5), (6, 6), (12, 12)].map(|(lines, faces)| fan(lines, faces)).into()
 }
