@@ -41,6 +41,7 @@ use crate::model::trial::Trial;
 use crate::sample::budget::Budget;
 use crate::sample::candidates::{Regions, candidates};
 use crate::sample::cover::{Choice, cover};
+use crate::sample::edge_cases::EdgeCases;
 use crate::sample::lower_bound::LowerBound;
 use crate::sample::scout::Begun;
 use crate::tolerance::COARSEST_CLOSED;
@@ -97,6 +98,8 @@ pub struct Baked {
     pub features: Found,
     /// How the splats were chosen.
     pub choice: Choice,
+    /// What the lines do that they are cut along.
+    pub edge_cases: EdgeCases,
     /// What the choice costs and what any other costs at least, if that was asked for.
     pub lower_bound: Option<LowerBound>,
     /// What came of the clip partners, if splats are cut by them.
@@ -198,6 +201,7 @@ pub fn bake(
             break;
         }
     }
+    let edge_cases = cover.edge_cases(&grower, &regions);
     let chosen = cover.chosen();
     let (splats, partners) = match options.clips {
         Clips::Curved | Clips::Straight => (chosen.into_iter().map(|one| one.splat).collect(), None),
@@ -222,6 +226,7 @@ pub fn bake(
         stand_in,
         features,
         choice,
+        edge_cases,
         lower_bound,
         partners,
         samples,

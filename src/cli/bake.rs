@@ -376,6 +376,7 @@ fn choice(baked: &Baked) -> report::Choice {
         withdrawn: baked.choice.withdrawn as u64,
         last_resorts: baked.choice.last_resorts as u64,
         low_rank: baked.choice.low_rank as u64,
+        edge_cases: baked.edge_cases.clone(),
         lower_bound: baked.lower_bound,
     }
 }

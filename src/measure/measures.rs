@@ -185,6 +185,9 @@ pub struct GpuFrame {
     pub frame_ms: f64,
 }
 
+/// Bounds that a mesh may lie off the splats' surfaces between its vertices.
+pub const FORWARD_BUDGETS: f64 = 2.0;
+
 /// Bounds that the splats' surfaces may stray from the input's: the rim of a splat may lie
 /// outside all it covers.
 pub const BACKWARD_BUDGETS: f64 = 2.0;
@@ -198,7 +201,13 @@ impl Measures {
             ("fit max", self.fit.max, self.budget),
             ("backward max", self.backward.max, BACKWARD_BUDGETS * self.budget),
         ];
-        for (name, value, limit) in distances {
+        // Between the points of a cloud its surface is a guess, and its lines are only found.
+        let of_mesh = [
+            ("forward max", self.forward.max, FORWARD_BUDGETS * self.budget),
+            ("edge max", self.edge.map_or(0.0, |edge| edge.max), self.budget),
+        ];
+        let more = if self.kind == MESH { &of_mesh[..] } else { &[] };
+        for &(name, value, limit) in distances.iter().chain(more) {
             if value.is_nan() || value > limit {
                 faults.push(format!("{name} is {value:.3e} of the diagonal, more than {limit:.3e}"));
             }

@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::model::asset::{Asset, Counts};
 pub use optional::Optional;
 pub use schema::{
-    Absent, Accuracy, Choice, Chunk, Density, Field, File, Fit, Input, LowerBound, Model, Moved, Options, Run,
+    Absent, Accuracy, Choice, Chunk, Density, EdgeCases, Field, File, Fit, Input, LowerBound, Meeting, Model,
+    Moved, Options, Run,
 };
 
 /// Name and version of the schema. The number grows when a key changes its meaning or goes;

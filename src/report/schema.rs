@@ -8,6 +8,7 @@ use super::memory;
 use crate::bake::StageTime;
 use crate::format::{self, ChunkInfo, FieldInfo, FileInfo};
 use crate::model::asset::Asset;
+pub use crate::sample::edge_cases::{EdgeCases, Meeting};
 pub use crate::sample::lower_bound::LowerBound;
 
 /// What was baked.
@@ -123,6 +124,9 @@ pub struct Choice {
     pub last_resorts: u64,
     /// Splats whose points did not determine a whole quadric.
     pub low_rank: u64,
+    /// What the lines do that splats are cut along.
+    #[serde(default)]
+    pub edge_cases: EdgeCases,
     /// What the choice costs and what any other by the same candidates costs at least; `None` where
     /// that was not asked for.
     #[serde(default)]

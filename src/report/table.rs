@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Choice, File, LowerBound, Moved, Report, Run};
+use super::{Choice, EdgeCases, File, LowerBound, Moved, Report, Run};
 
 impl Report {
     /// Lines of plain text, ending in a line break.
@@ -121,8 +121,32 @@ impl Table {
             "fell back",
             format!("{low_rank} fits of lower order, {last_resorts} pieces with a splat of their own"),
         );
+        self.edge_cases(&choice.edge_cases);
         if let Some(bound) = &choice.lower_bound {
             self.lower_bound(bound);
+        }
+    }
+
+    /// Only what there is.
+    fn edge_cases(&mut self, cases: &EdgeCases) {
+        let EdgeCases { several_lines, inflections, corners, curved_arms, loops, several_curves, .. } = cases;
+        let counts = [
+            (several_curves, "cut by several curves"),
+            (several_lines, "with several lines"),
+            (corners, "with corners"),
+            (curved_arms, "of these with curved arms"),
+            (inflections, "with inflections"),
+            (loops, "with loops"),
+        ];
+        let list = |counts: Vec<String>| (!counts.is_empty()).then(|| counts.join(", "));
+        let there = |(count, what): (&u64, &str)| (*count > 0).then(|| format!("{count} {what}"));
+        if let Some(splats) = list(counts.into_iter().filter_map(there).collect()) {
+            self.row("edge cases", format!("splats: {splats}"));
+        }
+        let ends = there((&cases.line_ends, "where a line ends"));
+        let meetings = cases.meetings.iter().map(|at| format!("{} where {} lines meet", at.places, at.lines));
+        if let Some(places) = list(ends.into_iter().chain(meetings).collect()) {
+            self.row("", format!("places: {places}"));
         }
     }
 

@@ -89,6 +89,16 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
     };
     let run = Run::of_stages(vec![stage("read", 0.25), stage("sample", 0.375), stage("read", 0.125)], 2);
     let lower_bound = Some(LowerBound { cost: 120.0, area: 90.5, lagrangian: 110.9, rounds: 300 });
+    let edge_cases = EdgeCases {
+        several_lines: 6,
+        inflections: 7,
+        corners: 9,
+        curved_arms: 8,
+        loops: 1,
+        several_curves: 10,
+        line_ends: 11,
+        meetings: vec![Meeting { lines: 3, places: 12 }, Meeting { lines: 4, places: 1 }],
+    };
     let choice = Choice {
         samples: 900,
         candidates: 20,
@@ -98,6 +108,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         withdrawn: 2,
         last_resorts: 1,
         low_rank: 2,
+        edge_cases,
         lower_bound,
     };
     Origin { input, options, choice, run }

@@ -6,6 +6,7 @@ pub mod backing;
 pub mod budget;
 pub mod candidates;
 pub mod cover;
+pub mod edge_cases;
 pub mod enclose;
 mod exchange;
 pub mod facet;

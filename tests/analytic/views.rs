@@ -16,23 +16,13 @@ pub const COARSER: u32 = 300;
 /// What 26 views showed, in pixels.
 #[derive(Default)]
 pub struct Seen {
-    compared: u64,
-    missing: u64,
-    extra: u64,
-    through: u64,
+    pub compared: u64,
+    pub missing: u64,
+    pub extra: u64,
+    pub through: u64,
 }
 
 impl Seen {
-    /// Shares of the pixels that rays along which no bake looks may see through: slits between splats that
-    /// are narrower than its lattice of rays, where a surface is seen at its flattest.
-    const SLITS: f64 = 1e-6;
-
-    /// What breaks a promise, if some slits between the rays of a bake are none.
-    pub fn faults_but_for_slits(&self) -> Vec<String> {
-        let few = self.through as f64 <= Self::SLITS * self.compared as f64;
-        Self { through: if few { 0 } else { self.through }, ..*self }.faults()
-    }
-
     /// What breaks a promise.
     pub fn faults(&self) -> Vec<String> {
         [("missing", self.missing), ("extra", self.extra), ("seen through", self.through)]

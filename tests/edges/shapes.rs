@@ -168,6 +168,10 @@ impl Corner {
     }
 }
 
+/// A shape with tips narrower than a pixel: where these end, no ray meets them, and one may meet what is cut
+/// within the bound outside them.
+pub const TIPS: &str = "acute corners of 30 to 70 degrees";
+
 /// Flat kites beside each other, each with a corner more acute than the last.
 fn kites() -> Shape {
     let mut surface = Surface::default();
@@ -183,7 +187,7 @@ fn kites() -> Shape {
         surface.triangle([tip, right, back], false);
         surface.triangle([tip, back, left], false);
     }
-    shape("acute corners of 30 to 70 degrees", &surface)
+    shape(TIPS, &surface)
 }
 
 /// A block with a round step in its upper side, up or down: its rim is a loop inside a splat.

@@ -45,10 +45,12 @@ fn measures_survive_their_json() {
 fn each_broken_promise_is_one_fault() {
     assert_eq!(sound().faults(), Vec::<String>::new());
     type Plant = fn(&mut Measures);
-    let breaks: [(&str, Plant); 6] = [
+    let breaks: [(&str, Plant); 8] = [
         ("fit max", |m| m.fit.max = 1.1e-3),
         ("fit max", |m| m.fit.max = f64::NAN),
         ("backward max", |m| m.backward.max = 2.1e-3),
+        ("forward max", |m| m.forward.max = 2.1e-3),
+        ("edge max", |m| m.edge = Some(Distances { max: 1.1e-3, ..Distances::default() })),
         ("1 pixels are missing", |m| m.holes.missing = 1),
         ("2 pixels are extra", |m| m.holes.extra = 2),
         ("3 points", |m| m.uncovered = 3),
@@ -60,7 +62,7 @@ fn each_broken_promise_is_one_fault() {
         assert!(faults.len() == 1 && faults[0].contains(part), "{part}: {faults:?}");
     }
     let mut cloud = sound();
-    (cloud.kind, cloud.outliers) = (CLOUD.into(), 3);
+    (cloud.kind, cloud.outliers, cloud.forward.max) = (CLOUD.into(), 3, 1.0);
     assert_eq!(cloud.faults(), Vec::<String>::new(), "a cloud may have outliers");
     cloud.uncovered = 1;
     assert!(cloud.faults()[0].contains("of the cloud are not covered"), "{:?}", cloud.faults());
