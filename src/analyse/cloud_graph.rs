@@ -9,11 +9,14 @@
 //! surface wherever no empty disc is larger than `GAP` spacings; where one is, the surface
 //! has a hole.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use super::nearest::{NEAREST, Nearest, listed};
 use super::surface::NONE;
+use crate::model::discs::Gap;
 
 /// Normals of joined points agree by at least this cosine (60°).
 const AGREE: f32 = 0.5;
@@ -27,6 +30,10 @@ const FAR: f32 = 4.0;
 /// An empty disc of a radius of more spacings than this is a hole. In an even random
 /// sampling of ten million points about one disc is that large.
 const GAP: f64 = 2.5;
+
+/// A wedge without points wider than this (150°) lies beyond a border or in a hole: among sixteen others
+/// strewn evenly about a point, one in two hundred has such a wedge by chance.
+const WIDE: f64 = TAU * 5.0 / 12.0;
 
 /// Sectors of the tangent plane.
 pub const SECTORS: usize = 8;
@@ -51,6 +58,10 @@ pub struct Joined {
     pub sectors: [u32; SECTORS],
     /// How far the point stands for the surface, model units.
     pub margin: f32,
+    /// Whether the cell is not closed within what a hole is wide, as at a border.
+    pub open: bool,
+    /// Where no point is joined to it, if that is wider than an even sampling leaves it.
+    pub gap: Option<Gap>,
 }
 
 /// Whether points at a distance, with such spacings, are near enough for the surface to go from one
@@ -98,9 +109,25 @@ impl Sites<'_> {
             count += 1;
         }
         let spacing = f64::from(self.spacing[n]);
-        let margin = farthest_corner(&flat[..count], GAP * spacing).unwrap_or(spacing);
-        Joined { sectors, margin: margin as f32 }
+        let Corners { farthest, open } = farthest_corner(&flat[..count], GAP * spacing);
+        let gap = widest_gap(&flat[..count]).map(|[middle, half]| Gap {
+            outward: libm::cos(middle) as f32 * right + libm::sin(middle) as f32 * up,
+            cosine: libm::cos(half) as f32,
+        });
+        Joined { sectors, margin: farthest.unwrap_or(spacing) as f32, open, gap }
     }
+}
+
+/// Middle direction and half the angle of the widest wedge without any of `sites`, its tip at the origin, if
+/// it is wider than [`WIDE`]; radians.
+fn widest_gap(sites: &[DVec2]) -> Option<[f64; 2]> {
+    let mut angles: Vec<f64> = sites.iter().map(|site| libm::atan2(site.y, site.x)).collect();
+    angles.sort_unstable_by(f64::total_cmp);
+    let first = angles.first().map_or(TAU, |first| first + TAU);
+    let from = angles.last().map_or(0.0, |last| *last);
+    let gaps = angles.windows(2).map(|pair| [pair[0], pair[1]]).chain([[from, first]]);
+    let [from, to] = gaps.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+    (to - from > WIDE).then_some([0.5 * (from + to), 0.5 * (to - from)])
 }
 
 /// The eighth of the plane a place lies in.
@@ -112,10 +139,19 @@ fn sector(uv: DVec2) -> usize {
 /// Most corners a cell can have: a square cut by every neighbour.
 const CORNERS: usize = 4 + NEAREST;
 
-/// Distance of the farthest corner of the Voronoi cell of the origin among `sites`; corners
-/// farther than `reach` belong to holes and do not count. `None` where none is left.
+/// The corners of a cell, as far as they count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corners {
+    /// Distance of the farthest from the cell's own point; `None` where none counts.
+    pub farthest: Option<f64>,
+    /// Whether some do not count: the cell goes on into a hole.
+    pub open: bool,
+}
+
+/// The corners of the Voronoi cell of the origin among `sites`; those farther than `reach` belong to holes
+/// and do not count.
 #[must_use]
-pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Option<f64> {
+pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Corners {
     let mut cell = [DVec2::ZERO; CORNERS];
     let mut count = 4;
     for (corner, (x, y)) in cell.iter_mut().zip([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) {
@@ -147,7 +183,9 @@ pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Option<f64> {
     }
     let corners = cell[..count].iter().map(|corner| corner.length());
     // Corners of the square itself, or on its sides, lie at least `reach` away.
-    corners.filter(|&distance| distance > 0.0 && distance < reach * (1.0 - 1e-9)).reduce(f64::max)
+    let near = |distance: &f64| *distance < reach * (1.0 - 1e-9);
+    let open = corners.clone().any(|distance| !near(&distance));
+    Corners { farthest: corners.filter(|distance| *distance > 0.0 && near(distance)).reduce(f64::max), open }
 }
 
 #[cfg(test)]
@@ -161,7 +199,8 @@ mod tests {
         let square: Vec<DVec2> = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1)]
             .map(|(x, y)| DVec2::new(x.into(), y.into()))
             .to_vec();
-        let corner = |sites: &[DVec2]| farthest_corner(sites, 2.5);
+        let corner = |sites: &[DVec2]| farthest_corner(sites, 2.5).farthest;
+        let open = |sites: &[DVec2]| farthest_corner(sites, 2.5).open;
         assert!((corner(&square).unwrap() - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-12);
         let hexagon: Vec<DVec2> =
             (0..6).map(|n| DVec2::from_angle(f64::from(n) * std::f64::consts::FRAC_PI_3)).collect();
@@ -173,6 +212,13 @@ mod tests {
         );
         assert_eq!(corner(&[DVec2::X, -DVec2::X]), None, "a line of points bounds no cell");
         assert_eq!(corner(&[]), None);
+        let half_turn = [DVec2::X, DVec2::Y, DVec2::NEG_X];
+        let gap = widest_gap(&half_turn).map(|gap| gap.map(f64::to_degrees));
+        assert!(
+            gap.is_some_and(|[middle, half]| (middle - 270.0).abs() < 1e-9 && (half - 90.0).abs() < 1e-9)
+        );
+        assert_eq!((widest_gap(&hexagon), widest_gap(&[])), (None, Some([0.5 * TAU; 2])));
+        assert!(!open(&square) && !open(&hexagon) && open(&hexagon[..3]) && open(&[]));
     }
 
     #[test]

@@ -67,8 +67,29 @@ impl SegmentGrid {
     /// As [`Self::nearest`], of some segments alone.
     #[must_use]
     pub fn nearest_of(&self, point: DVec3, reach: f64, among: impl Fn(u32) -> bool) -> Option<Nearest> {
-        let (low, high) = (cell_of(point - reach, self.cell), cell_of(point + reach, self.cell));
         let mut best: Option<Nearest> = None;
+        self.visit(point, reach, |found| {
+            let nearer = |n: &Nearest| (found.distance, found.segment) < (n.distance, n.segment);
+            if best.as_ref().is_none_or(nearer) && among(found.segment) {
+                best = Some(found);
+            }
+        });
+        best
+    }
+
+    /// The segments within `reach` of a point, ascending.
+    #[must_use]
+    pub fn within(&self, point: DVec3, reach: f64) -> Vec<u32> {
+        let mut found = Vec::new();
+        self.visit(point, reach, |near| found.push(near.segment));
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Calls `found` with the nearest place of each segment within `reach` of a point, perhaps repeatedly.
+    fn visit(&self, point: DVec3, reach: f64, mut found: impl FnMut(Nearest)) {
+        let (low, high) = (cell_of(point - reach, self.cell), cell_of(point + reach, self.cell));
         for x in low.x..=high.x {
             for y in low.y..=high.y {
                 // The cells of a column along z lie together in the sorted list.
@@ -80,14 +101,12 @@ impl SegmentGrid {
                     let [a, b] = self.segments[segment as usize];
                     let near = nearest_on(a, b, point);
                     let distance = near.distance(point);
-                    let nearer = |n: &Nearest| (distance, segment) < (n.distance, n.segment);
-                    if distance <= reach && best.as_ref().is_none_or(nearer) && among(segment) {
-                        best = Some(Nearest { segment, point: near, distance });
+                    if distance <= reach {
+                        found(Nearest { segment, point: near, distance });
                     }
                 }
             }
         }
-        best
     }
 }
 
@@ -111,6 +130,11 @@ mod tests {
                 segments.iter().map(|[a, b]| nearest_on(*a, *b, at).distance(at)).fold(f64::MAX, f64::min);
             let found = grid.nearest(at, reach).map(|n| n.distance);
             assert_eq!(found, (brute <= reach).then_some(brute));
+            let near = |s: &u32| {
+                let [a, b] = segments[*s as usize];
+                nearest_on(a, b, at).distance(at) <= reach
+            };
+            assert_eq!(grid.within(at, reach), (0..200).filter(near).collect::<Vec<u32>>());
         }
     }
 }

@@ -3,6 +3,7 @@
 pub mod asset;
 pub mod clip_curve;
 pub mod cloud;
+pub mod discs;
 pub mod frame;
 pub mod intersect;
 pub mod mesh;
