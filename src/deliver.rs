@@ -2,7 +2,7 @@
 //!
 //! The error that a file states is measured on the splats as a reader will decode them.
 
-use crate::bake::{Baked, Clock, Options, Progress, StageTime, bake};
+use crate::bake::{Baked, Clock, Kept, Options, Progress, StageTime, bake};
 use crate::error::{Error, Result};
 use crate::format::{self, quantize::Quantizer};
 use crate::ingest::Input;
@@ -79,7 +79,16 @@ fn measure(model: Model<'_>, left_out: &[u32], asset: &mut Asset) -> Result<()> 
     Ok(())
 }
 
-/// An input as it is drawn and measured.
+/// What a bake keeps of an input as it is measured: a cloud as the surface that it tells of.
+#[must_use]
+pub fn surface<'a>(kept: &'a Kept<'_>) -> Model<'a> {
+    match kept.input.as_ref() {
+        Input::Mesh(mesh) => Model::Mesh(mesh),
+        Input::Cloud(cloud) => Model::Surface(cloud, &kept.discs),
+    }
+}
+
+/// An input as it is drawn by itself.
 #[must_use]
 pub fn model(input: &Input) -> Model<'_> {
     match input {

@@ -2,6 +2,7 @@
 //! along feature lines, given or found, join.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::cloud_assembly::Assembly;
 use super::cloud_creases::{Sought, found};
@@ -13,10 +14,11 @@ use super::line_cut::LineCut;
 use super::line_network::Network;
 use super::nearest::{Nearest, Search, spacing};
 use super::outliers::{Strewn, outliers};
-use super::surface::Surface;
+use super::surface::{NONE, Surface};
 use super::thin::{Reach, Sheet, owners};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
+use crate::model::discs::{Disc, Discs, End};
 
 /// The surface of a cloud, and what is not part of it.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +42,15 @@ pub enum Lines<'a> {
     Found(Sought),
 }
 
+/// What a cloud's surface is, as far as each of its points tells.
+#[derive(Clone, Debug, Default)]
+pub struct CloudDiscs {
+    /// Points of the cloud that belong to no surface, ascending: outliers.
+    pub left_out: Vec<u32>,
+    /// The discs of the others, in the cloud's order.
+    pub discs: Discs,
+}
+
 /// A cloud's points, joined to their sheets and told from outliers.
 struct Laid {
     points: Distinct,
@@ -48,6 +59,8 @@ struct Laid {
     joined: Vec<Joined>,
     /// Pairs of a point on a line and one of the cloud.
     joins: Vec<(u32, u32)>,
+    /// What ends the discs of points beside lines.
+    ends: Vec<(u32, End)>,
     on_line: Vec<bool>,
     outlier: Vec<bool>,
     /// Of the lines, those far from the cloud.
@@ -71,7 +84,7 @@ pub fn cloud_surface(
 ) -> Result<CloudSurface> {
     let laid = Laid::of(cloud, source, lines)?;
     let left_out = laid.left_out();
-    let Laid { points, normals, cut, joined, joins, on_line, outlier, lost } = laid;
+    let Laid { points, normals, cut, joined, joins, on_line, outlier, lost, .. } = laid;
     let sheet = Sheet {
         positions: &points.positions,
         normals: &normals.normals,
@@ -89,12 +102,14 @@ pub fn cloud_surface(
     Ok(CloudSurface { surface, left_out, edges, matched })
 }
 
-/// The points of a cloud that belong to no surface, ascending: those that [`cloud_surface`] leaves out.
+/// The surface of a cloud as its points tell it by themselves: what splats that cover it have to fill, and
+/// may. The points left out are those that [`cloud_surface`] leaves out, and margins and lines are the same.
 ///
 /// # Errors
 /// As [`cloud_surface`].
-pub fn cloud_outliers(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<Vec<u32>> {
-    Ok(Laid::of(cloud, source, lines)?.left_out())
+pub fn cloud_discs(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<CloudDiscs> {
+    let laid = Laid::of(cloud, source, lines)?;
+    Ok(CloudDiscs { left_out: laid.left_out(), discs: laid.discs() })
 }
 
 impl Laid {
@@ -123,6 +138,7 @@ impl Laid {
         };
         let joined = joined(&sites, cut.as_ref());
         let joins = cut.as_ref().map(|cut| cut.joins(&sites)).unwrap_or_default();
+        let ends = cut.as_ref().map(|cut| cut.ends(&sites, &joined)).unwrap_or_default();
         let mut on_line = vec![false; joined.len()];
         for &(_, point) in &joins {
             on_line[point as usize] = true;
@@ -135,7 +151,7 @@ impl Laid {
             on_line: &on_line,
         };
         let outlier = outliers(&strewn);
-        Ok(Self { points, normals, cut, joined, joins, on_line, outlier, lost })
+        Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, lost })
     }
 
     fn left_out(&self) -> Vec<u32> {
@@ -143,7 +159,38 @@ impl Laid {
         let is_outlier = |v: &u32| self.outlier[place[*v as usize] as usize];
         (0..place.len() as u32).filter(is_outlier).collect()
     }
+
+    /// The discs of the cloud's points but for outliers, in its order.
+    fn discs(&self) -> Discs {
+        let kept: Vec<u32> =
+            self.points.place.iter().copied().filter(|&n| !self.outlier[n as usize]).collect();
+        let ends = (0_u32..).zip(&kept).flat_map(|(at, &n)| {
+            let from = self.ends.partition_point(|end| end.0 < n);
+            self.ends[from..].iter().take_while(move |end| end.0 == n).map(move |end| (at, end.1))
+        });
+        let ends: Vec<(u32, End)> = ends.collect();
+        Discs::new(kept.par_iter().map(|&n| self.disc(n)).collect(), &ends)
+    }
+
+    /// By how much the normal turns from a point toward another, as far as the point's margin at least.
+    fn turn(&self, point: u32, other: u32) -> f32 {
+        let [a, b] = [point as usize, other as usize];
+        let way = self.points.positions[a].distance(self.points.positions[b]);
+        let farther = (self.joined[a].margin / way).clamp(1.0, FARTHER);
+        farther * self.normals.normals[a].distance(self.normals.normals[b])
+    }
+
+    fn disc(&self, point: u32) -> Disc {
+        let (normal, joined) = (self.normals.normals[point as usize], &self.joined[point as usize]);
+        let others = joined.sectors.iter().filter(|&&other| other != NONE);
+        let turn = others.map(|&other| self.turn(point, other)).fold(0.0, f32::max);
+        Disc { normal, margin: joined.margin, turn, open: joined.open, gap: joined.gap }
+    }
 }
+
+/// Turns of normals are told for up to this many times the way on which they are seen: beyond, they are
+/// noise rather than the surface.
+const FARTHER: f32 = 2.0;
 
 /// What each point is joined to, on its own side of the lines.
 fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {

@@ -5,11 +5,15 @@
 //! linked ends are one point, unlinked ends points of their own.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
-use super::cloud_graph::Sites;
+use super::cloud_graph::{Joined, Sites};
 use super::line_network::Network;
 use super::line_sheets::{Sheet, Sheets};
+use super::segment_grid::SegmentGrid;
 use super::surface::NONE;
+use crate::model::discs::End;
+use crate::model::polyline::nearest_on;
 
 /// Borders are linked where their sheets' normals agree by at least this cosine (60°).
 const AGREE: f64 = 0.5;
@@ -20,6 +24,13 @@ const JOINED: usize = 4;
 
 /// Points this many spacings from a line are joined to its border.
 const BESIDE: f64 = 1.5;
+
+/// The way from a point to a line that ends its sheet leaves the point's plane by less than this sine (45°).
+const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Lines are looked for this many spacings beyond what a disc may reach, so that whoever fits the points
+/// around knows which are of the same sheet.
+const SEEN: f32 = 1.0;
 
 /// How far beyond its ends, in shares of its length, a segment still parts sheets: a little
 /// where the line goes on, so that nothing slips between two segments; not quite to the end
@@ -245,6 +256,42 @@ impl LineCut {
             let ends = border.ends.map(|node| self.network.nodes[node as usize].distance(here));
             ends[0].max(ends[1])
         })
+    }
+
+    /// What ends the discs of points beside the lines: each point with a piece of line, in the order of the
+    /// points. `joined` tells how far these stand for the surface.
+    ///
+    /// A segment ends the disc of a point that lies on one of its sheets: whose normal agrees with that
+    /// sheet's, and whose plane the segment is near.
+    #[must_use]
+    pub fn ends(&self, sites: &Sites, joined: &[Joined]) -> Vec<(u32, End)> {
+        let segments = (0..self.network.segments.len() as u32).map(|segment| self.network.ends(segment));
+        let grid = SegmentGrid::new(segments.collect());
+        let points = (0..sites.positions.len() as u32).into_par_iter();
+        let beside = points.filter(|&point| self.sheets.beside[point as usize].is_some());
+        let ends = beside.flat_map_iter(|point| {
+            let reach =
+                f64::from(sites.spacing[point as usize].mul_add(SEEN, 2.0 * joined[point as usize].margin));
+            let near = grid.within(sites.positions[point as usize].as_dvec3(), reach);
+            near.into_iter().filter_map(move |segment| Some((point, self.end(sites, point, segment)?)))
+        });
+        ends.collect()
+    }
+
+    /// What a segment ends the disc of a point with, if it does.
+    fn end(&self, sites: &Sites, point: u32, segment: u32) -> Option<End> {
+        let center = sites.positions[point as usize].as_dvec3();
+        let normal = sites.normals[point as usize].as_dvec3();
+        let sheet = &self.sheets.of[segment as usize][self.sheets.toward(&self.network, segment, center)?];
+        let ends = self.network.ends(segment);
+        let way = nearest_on(ends[0], ends[1], center) - center;
+        if sheet.normal.dot(normal) < AGREE || way.dot(normal).abs() > ALONG * way.length() {
+            return None;
+        }
+        let flat = ends.map(|end| end - (end - center).dot(normal) * normal);
+        let across = normal.cross(flat[1] - flat[0]).try_normalize()?;
+        let inward = if across.dot(sheet.inward) < 0.0 { -across } else { across };
+        Some(End { ends: flat.map(|end| end.as_vec3()), inward: inward.as_vec3() })
     }
 
     /// How many segments some sheet ends at, and their length, model units.

@@ -158,7 +158,7 @@ mod tests {
     use glam::DVec3;
 
     use crate::analyse::cloud_normals::NormalSource;
-    use crate::analyse::cloud_surface::{Lines, cloud_outliers};
+    use crate::analyse::cloud_surface::{Lines, cloud_discs};
     use crate::analyse::planted::random;
     use crate::model::cloud::Cloud;
 
@@ -180,7 +180,7 @@ mod tests {
             normals: normals.iter().map(|normal| normal.as_vec3()).collect(),
             ..Cloud::default()
         };
-        cloud_outliers(&cloud, NormalSource::Auto, Lines::Given(&[])).unwrap()
+        cloud_discs(&cloud, NormalSource::Auto, Lines::Given(&[])).unwrap().left_out
     }
 
     #[test]

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use super::options::{Edges, Options};
 use super::{cloud_lines, given_lines};
-use crate::analyse::cloud_surface::cloud_outliers;
+use crate::analyse::cloud_surface::{CloudDiscs, cloud_discs};
 use crate::error::Result;
 use crate::ingest::Input;
+use crate::model::discs::Discs;
 
 /// An input, and how much of it was left out.
 #[derive(Clone, Debug)]
@@ -15,6 +16,8 @@ pub struct Kept<'a> {
     pub input: Cow<'a, Input>,
     /// Points of the cloud that belong to no surface: outliers. 0 for a mesh.
     pub outliers: usize,
+    /// The surface that the points of the cloud tell of. Empty for a mesh.
+    pub discs: Discs,
 }
 
 /// What a bake keeps of an input, or of what stands for that, with such edges and options and under this
@@ -24,15 +27,16 @@ pub struct Kept<'a> {
 /// the same points.
 ///
 /// # Errors
-/// Those of [`cloud_outliers`].
+/// Those of [`cloud_discs`].
 pub fn kept<'a>(input: &'a Input, edges: &Edges, options: &Options, max_error: f64) -> Result<Kept<'a>> {
-    let whole = Kept { input: Cow::Borrowed(input), outliers: 0 };
-    let Input::Cloud(cloud) = input else { return Ok(whole) };
+    let whole = Cow::Borrowed(input);
+    let Input::Cloud(cloud) = input else {
+        return Ok(Kept { input: whole, outliers: 0, discs: Discs::default() });
+    };
     let given = given_lines(edges, &cloud.frame);
     let lines = cloud_lines(cloud, edges, &given, options.edge_angle, max_error);
-    let left_out = cloud_outliers(cloud, options.normals.into(), lines)?;
-    if left_out.is_empty() {
-        return Ok(whole);
-    }
-    Ok(Kept { input: Cow::Owned(Input::Cloud(cloud.without(&left_out))), outliers: left_out.len() })
+    let CloudDiscs { left_out, discs } = cloud_discs(cloud, options.normals.into(), lines)?;
+    let outliers = left_out.len();
+    let input = if outliers > 0 { Cow::Owned(Input::Cloud(cloud.without(&left_out))) } else { whole };
+    Ok(Kept { input, outliers, discs })
 }

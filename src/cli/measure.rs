@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use qsplat::bake::{Kept, Options, feature_lines, kept, meant};
-use qsplat::deliver::model;
+use qsplat::bake::{Options, feature_lines, kept, meant};
+use qsplat::deliver::{model, surface};
 use qsplat::error::{Error, Result};
 use qsplat::format;
 use qsplat::measure::measures::GpuFrame;
@@ -83,10 +83,10 @@ impl Arguments {
         let lines = feature_lines(&meant.input, &meant.edges, self.edge_angle, max_error)?;
         let lines = lines.as_ref().map(|lines| align::lines(lines, &frame, &asset.frame));
         progress.stage("reference");
-        let Kept { input: kept, outliers } = kept(&meant.input, &meant.edges, &options, max_error)?;
-        let aligned = align::bring(model(&kept), &asset);
+        let kept = kept(&meant.input, &meant.edges, &options, max_error)?;
+        let aligned = align::bring(surface(&kept), &asset);
         let reference = Reference::standing_for(aligned.model(), asset.diagonal)?;
-        let reference = Reference { outliers, ..reference };
+        let reference = Reference { outliers: kept.outliers, ..reference };
         let subject = Subject { bytes: &bytes, asset: &asset, against: &reference, lines: lines.as_deref() };
         let mut measures = measure::measure_telling(&subject, &mut |stage| progress.stage(stage))?;
         drop(progress);

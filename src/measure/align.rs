@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
 use crate::model::cloud::Cloud;
+use crate::model::discs::Discs;
 use crate::model::frame::Frame;
 use crate::model::mesh::Mesh;
 use crate::render::input::Model;
@@ -21,6 +22,8 @@ pub enum Aligned<'a> {
     Mesh(Cow<'a, Mesh>),
     /// A cloud.
     Cloud(Cow<'a, Cloud>),
+    /// A cloud and the surface that it tells of.
+    Surface(Cow<'a, Cloud>, Cow<'a, Discs>),
 }
 
 impl Aligned<'_> {
@@ -30,6 +33,7 @@ impl Aligned<'_> {
         match self {
             Self::Mesh(mesh) => Model::Mesh(mesh),
             Self::Cloud(cloud) => Model::Cloud(cloud),
+            Self::Surface(cloud, discs) => Model::Surface(cloud, discs),
         }
     }
 }
@@ -76,7 +80,14 @@ pub fn bring<'a>(against: Model<'a>, asset: &Asset) -> Aligned<'a> {
             let vertices = moved(&mesh.vertices, asset.frame);
             Aligned::Mesh(Cow::Owned(Mesh { vertices, ..mesh.clone() }))
         }
+        Model::Surface(cloud, discs) if frame == asset.frame => {
+            Aligned::Surface(Cow::Borrowed(cloud), Cow::Borrowed(discs))
+        }
         Model::Cloud(cloud) => Aligned::Cloud(Cow::Owned(moved(cloud, asset.frame))),
+        Model::Surface(cloud, discs) => Aligned::Surface(
+            Cow::Owned(moved(cloud, asset.frame)),
+            Cow::Owned(discs.moved(&frame, &asset.frame)),
+        ),
     }
 }
 

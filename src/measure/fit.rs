@@ -20,7 +20,7 @@ pub const REACH: f64 = 4.0;
 #[must_use]
 pub fn points(model: Model<'_>, left_out: &[u32]) -> Vec<Vec3> {
     let mut points: Vec<Vec3> = match model {
-        Model::Cloud(cloud) => {
+        Model::Cloud(cloud) | Model::Surface(cloud, _) => {
             let mut rest = left_out.iter().peekable();
             let all = (0_u32..).zip(&cloud.positions);
             all.filter(|(n, _)| rest.next_if_eq(&n).is_none()).map(|(_, p)| *p).collect()

@@ -5,8 +5,9 @@
 //! with one of the other set among its eight neighbours. Where one part of the input hides
 //! another, the set has no outline: such pixels are compared.
 //!
-//! A cloud is drawn as discs, which overhang its surface by their radius. Inside, its band is
-//! therefore wider by that radius: what is left is surrounded by points on all sides.
+//! A cloud tells where its surface is no better than its discs do ([`Prepared::met`]): there the band is
+//! as wide as the outline is uncertain. It holds the pixels whose ray may meet the surface and may miss
+//! it, and one more on either side.
 //!
 //! A hole in a closed surface shows the surface's far side, so that both are hit there. Pixels
 //! where the splats lie farther behind than all that the input shows in the nine pixels around
@@ -14,8 +15,10 @@
 
 use image::{Rgb, RgbImage};
 
-use super::views::View;
 use crate::model::asset::Asset;
+use crate::render::input::Met;
+#[cfg(doc)]
+use crate::render::input::Prepared;
 use crate::render::picture::Visibility;
 
 /// Width of the band along the silhouette on either side, pixels.
@@ -69,25 +72,10 @@ pub struct HoleMap {
     pub marks: Vec<Mark>,
 }
 
-/// What the comparison of a view depends on besides the two visibilities.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rules {
-    /// Width of the band inside the silhouette, pixels.
-    pub inner: u32,
-    /// How far behind is through, model units.
-    pub behind: f64,
-}
-
-impl Rules {
-    /// For a view of `side` pixels, of an input drawn with discs of this radius in model units:
-    /// 0 for a mesh.
-    #[must_use]
-    pub fn new(asset: &Asset, disc: f64, view: &View, side: u32) -> Self {
-        let overhang = disc / view.height * f64::from(side);
-        // Written so that even discs as large as the picture give a width.
-        let inner = BAND + overhang.ceil().min(f64::from(side)) as u32;
-        Self { inner, behind: BEHIND * asset.max_error + disc }
-    }
+/// How far behind the input, model units, splats are seen through it.
+#[must_use]
+pub fn behind(asset: &Asset) -> f64 {
+    BEHIND * asset.max_error
 }
 
 /// How far away the input lies at each pixel: all that is compared of it.
@@ -95,24 +83,27 @@ impl Rules {
 pub struct Depths {
     /// Width and height in pixels.
     size: [u32; 2],
-    /// View depths in model units, rows from the top; infinite where nothing is hit.
+    /// View depths in model units, rows from the top; infinite where the ray may meet nothing.
     depths: Vec<f64>,
+    /// Whether the ray may meet anything.
+    perhaps: Vec<bool>,
 }
 
 impl From<&Visibility> for Depths {
     fn from(seen: &Visibility) -> Self {
         let depths = seen.seen.iter().map(|hit| hit.map_or(f64::INFINITY, |hit| hit.depth)).collect();
-        Self { size: seen.size, depths }
+        let perhaps = seen.seen.iter().map(Option::is_some).collect();
+        Self { size: seen.size, depths, perhaps }
     }
 }
 
 impl Depths {
-    /// From depths of all pixels, rows from the top, infinite where nothing is hit.
-    pub(super) fn new(size: [u32; 2], depths: Vec<f64>) -> Self {
-        Self { size, depths }
+    /// From what all rays meet.
+    pub(super) fn new(size: [u32; 2], met: Met) -> Self {
+        Self { size, depths: met.surely, perhaps: met.perhaps }
     }
 
-    /// What a pixel shows.
+    /// What a pixel surely shows.
     pub(super) fn at(&self, x: u32, y: u32) -> Option<f64> {
         self.depths.get(y as usize * self.size[0] as usize + x as usize).copied().filter(|d| d.is_finite())
     }
@@ -120,19 +111,19 @@ impl Depths {
 
 /// Compares what an input and splats seen by one camera hit, in pictures of one size.
 #[must_use]
-pub fn compare(input: &Depths, splats: &Visibility, rules: &Rules) -> HoleMap {
+pub fn compare(input: &Depths, splats: &Visibility, behind: f64) -> HoleMap {
     let size = input.size;
     let hits = Counts::of(input);
     let marks = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
     let marks = marks.map(|(x, y)| {
         let inside = input.at(x, y);
         match (inside, splats.at(x, y)) {
-            _ if !hits.are_compared(x, y, inside.is_some(), rules) => Mark::Silhouette,
+            _ if !hits.are_compared(x, y, inside.is_some()) => Mark::Silhouette,
             (Some(_), None) => Mark::Missing,
             (None, Some(_)) => Mark::Extra,
             // The first is the quick answer to most, the second the rule.
             (Some(own), Some(hit))
-                if hit.depth > own + rules.behind && hit.depth > farthest(input, x, y) + rules.behind =>
+                if hit.depth > own + behind && hit.depth > farthest(input, x, y) + behind =>
             {
                 Mark::Through
             }
@@ -147,13 +138,13 @@ pub fn compare(input: &Depths, splats: &Visibility, rules: &Rules) -> HoleMap {
 /// are not asked about or not compared.
 ///
 /// Behind the input the limit is that of the pixel itself; where it is not kept, [`farthest`] decides.
-pub(super) fn limits(input: &Depths, asked: &[bool], rules: &Rules) -> Vec<f64> {
+pub(super) fn limits(input: &Depths, asked: &[bool], behind: f64) -> Vec<f64> {
     let hits = Counts::of(input);
     let limit = |(place, &asked): (usize, &bool)| {
         let (x, y) = (place as u32 % input.size[0], place as u32 / input.size[0]);
         let inside = input.at(x, y);
-        if asked && hits.are_compared(x, y, inside.is_some(), rules) {
-            inside.map_or(f64::INFINITY, |own| own + rules.behind)
+        if asked && hits.are_compared(x, y, inside.is_some()) {
+            inside.map_or(f64::INFINITY, |own| own + behind)
         } else {
             f64::NEG_INFINITY
         }
@@ -205,39 +196,55 @@ impl HoleMap {
     }
 }
 
-/// How many pixels are hit in any rectangle from the corner (a summed-area table, Crow 1984).
+/// How many pixels of a view are hit, surely and perhaps, in any rectangle.
 struct Counts {
-    size: [u32; 2],
-    sums: Vec<u32>,
+    surely: Sums,
+    perhaps: Sums,
 }
 
 impl Counts {
     fn of(seen: &Depths) -> Self {
-        let stride = seen.size[0] as usize + 1;
-        let mut sums = vec![0; stride * (seen.size[1] as usize + 1)];
-        for (y, row) in seen.depths.chunks_exact(stride - 1).enumerate() {
+        Self {
+            surely: Sums::of(seen.size, seen.depths.iter().map(|depth| depth.is_finite())),
+            perhaps: Sums::of(seen.size, seen.perhaps.iter().copied()),
+        }
+    }
+
+    /// Whether a pixel that is surely hit or not lies off the silhouette's band.
+    fn are_compared(&self, x: u32, y: u32, hit: bool) -> bool {
+        if hit { self.surely.around(x, y) == WHOLE } else { self.perhaps.around(x, y) == 0 }
+    }
+}
+
+/// Pixels within the band's width of one.
+const WHOLE: u64 = (2 * BAND as u64 + 1).pow(2);
+
+/// How many pixels there are in any rectangle from the corner (a summed-area table, Crow 1984).
+struct Sums {
+    size: [u32; 2],
+    sums: Vec<u32>,
+}
+
+impl Sums {
+    fn of(size: [u32; 2], mut there: impl Iterator<Item = bool>) -> Self {
+        let stride = size[0] as usize + 1;
+        let mut sums = vec![0; stride * (size[1] as usize + 1)];
+        for y in 0..size[1] as usize {
             let mut along = 0;
-            for (x, depth) in row.iter().enumerate() {
-                along += u32::from(depth.is_finite());
+            for (x, is_there) in there.by_ref().take(stride - 1).enumerate() {
+                along += u32::from(is_there);
                 sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + along;
             }
         }
-        Self { size: seen.size, sums }
+        Self { size, sums }
     }
 
-    /// Whether a pixel that is hit or not lies off the silhouette's band.
-    fn are_compared(&self, x: u32, y: u32, hit: bool, rules: &Rules) -> bool {
-        self.uniform(x, y, if hit { rules.inner } else { BAND }, hit)
-    }
-
-    /// Whether all pixels within `width` of one are as it is; beyond the picture nothing is hit.
-    fn uniform(&self, x: u32, y: u32, width: u32, hit: bool) -> bool {
-        let span = |at: u32, side: u32| [at.saturating_sub(width), at.saturating_add(width + 1).min(side)];
+    /// How many there are within the band's width of one; beyond the picture there are none.
+    fn around(&self, x: u32, y: u32) -> u64 {
+        let span = |at: u32, side: u32| [at.saturating_sub(BAND), at.saturating_add(BAND + 1).min(side)];
         let ([left, right], [top, bottom]) = (span(x, self.size[0]), span(y, self.size[1]));
         let at = |x: u32, y: u32| u64::from(self.sums[y as usize * (self.size[0] as usize + 1) + x as usize]);
-        let found = at(right, bottom) + at(left, top) - at(left, bottom) - at(right, top);
-        let whole = (2 * u64::from(width) + 1).pow(2);
-        found == if hit { whole } else { 0 }
+        at(right, bottom) + at(left, top) - at(left, bottom) - at(right, top)
     }
 }
 
@@ -271,7 +278,7 @@ mod tests {
             seen(&["........", "........", "...11111", "...11111", "...11111", "...11111", "...11111"]);
         let splats =
             seen(&["5.......", "........", ".5......", "...11111", "...11.51", "...11111", "..111111"]);
-        let map = compare(&Depths::from(&input), &splats, &Rules { inner: 1, behind: 2.0 });
+        let map = compare(&Depths::from(&input), &splats, 2.0);
         let expected = ["e       ", "  ||||||", " e||||||", "  ||   |", "  || mt|", "  ||   |", "  ||||||"];
         assert_eq!(rows(&map), expected);
         assert_eq!([Mark::Missing, Mark::Extra, Mark::Through].map(|mark| map.count(mark)), [1, 2, 1]);
@@ -280,16 +287,31 @@ mod tests {
     }
 
     #[test]
-    fn depth_beside_a_step_is_not_through_and_a_wider_band_hides_more() {
+    fn depth_beside_a_step_is_not_through() {
         let input = seen(&["1111111", "1111444", "1111444", "1111444", "1111111"]);
         let splats = seen(&["1111111", "1111444", "1114444", "1114414", "1111111"]);
-        let near = compare(&Depths::from(&input), &splats, &Rules { inner: 1, behind: 2.0 });
+        let near = compare(&Depths::from(&input), &splats, 2.0);
         assert_eq!(near.count(Mark::Through), 0, "the step lies within a pixel");
         let splats = seen(&["1111111", "1144444", "1114444", "1114444", "1111111"]);
-        let far = compare(&Depths::from(&input), &splats, &Rules { inner: 1, behind: 2.0 });
+        let far = compare(&Depths::from(&input), &splats, 2.0);
         assert_eq!(far.faults().collect::<Vec<_>>(), [(2, 1)]);
-        let wide = compare(&Depths::from(&input), &splats, &Rules { inner: 2, behind: 2.0 });
-        assert_eq!((wide.count(Mark::Through), wide.compared()), (0, 3));
+    }
+
+    #[test]
+    fn what_may_be_hit_or_missed_is_not_compared_nor_what_is_beside_it() {
+        let rows_of = |rows: [&str; 7]| seen(&rows);
+        let input =
+            rows_of(["........", "........", "...11111", "...11111", "...11111", "...11111", "...11111"]);
+        let splats =
+            rows_of(["5.......", ".......5", ".5......", "........", "........", "........", "........"]);
+        let mut depths = Depths::from(&input);
+        for (at, row) in [(2, 0), (3, 3), (2, 5)] {
+            depths.depths[row * 8 + at] = f64::INFINITY;
+            depths.perhaps[row * 8 + at] = true;
+        }
+        let map = compare(&depths, &splats, 2.0);
+        let expected = ["e|||    ", " |||||||", " e||||||", "  |||mm|", " ||||mm|", " |||mmm|", " |||||||"];
+        assert_eq!(rows(&map), expected);
     }
 
     #[test]

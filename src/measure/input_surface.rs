@@ -8,6 +8,7 @@ use super::samples::{self, MOST};
 use super::triangles::Triangles;
 use crate::error::{Error, Result};
 use crate::model::cloud::Cloud;
+use crate::model::discs::Discs;
 use crate::model::frame::Frame;
 use crate::model::mesh::Mesh;
 use crate::render::input::{Model, Style};
@@ -27,7 +28,7 @@ pub struct InputSurface<'a> {
 /// What the surface is made of.
 pub(super) enum Shape<'a> {
     Mesh { triangles: Triangles<'a>, area: f64 },
-    Cloud(CloudFit),
+    Cloud(CloudFit<'a>),
 }
 
 /// A place of the input's surface.
@@ -45,12 +46,17 @@ impl<'a> InputSurface<'a> {
     /// Makes a surface ready.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a mesh without any area.
+    /// [`Error::Usage`] for a mesh without any area, and for a cloud without its discs.
     pub fn new(model: Model<'a>) -> Result<Self> {
         let frame = model.cloud().frame;
         let (probes, shape) = match model {
             Model::Mesh(mesh) => of_mesh(mesh)?,
-            Model::Cloud(cloud) => of_cloud(cloud)?,
+            Model::Surface(cloud, discs) => of_cloud(cloud, discs)?,
+            Model::Cloud(_) => {
+                return Err(Error::Usage(
+                    "points alone are no surface to measure against: give their discs".into(),
+                ));
+            }
         };
         Ok(Self { frame, probes, shape })
     }
@@ -72,8 +78,8 @@ fn of_mesh(mesh: &Mesh) -> Result<(Vec<Probe>, Shape<'_>)> {
     Ok((probes, Shape::Mesh { triangles: Triangles::new(mesh), area }))
 }
 
-fn of_cloud(cloud: &Cloud) -> Result<(Vec<Probe>, Shape<'_>)> {
-    let fit = CloudFit::new(&cloud.positions)?;
+fn of_cloud<'a>(cloud: &'a Cloud, discs: &'a Discs) -> Result<(Vec<Probe>, Shape<'a>)> {
+    let fit = CloudFit::new(&cloud.positions, discs)?;
     let points: Vec<u32> = (0..cloud.positions.len() as u32).collect();
     let probe = |point: u32| {
         let given = cloud.normals.get(point as usize).and_then(|normal| normal.as_dvec3().try_normalize());

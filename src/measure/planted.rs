@@ -3,9 +3,12 @@
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
+use crate::analyse::cloud_normals::NormalSource;
+use crate::analyse::cloud_surface::{Lines, cloud_discs};
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::clip_curve::ClipCurve;
 use crate::model::cloud::Cloud;
+use crate::model::discs::Discs;
 use crate::model::mesh::Mesh;
 use crate::model::splat::Splat;
 
@@ -33,6 +36,13 @@ pub(super) fn flat(center: DVec3, radii: DVec2, clips: Vec<ClipCurve>) -> Splat 
 pub(super) fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     let positions = positions.into_iter().map(DVec3::as_vec3).collect();
     Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, dropped: 0 }
+}
+
+/// The surface that a cloud tells of, without lines and without points that belong to none.
+pub(super) fn discs(cloud: &Cloud) -> Discs {
+    let found = cloud_discs(cloud, NormalSource::Auto, Lines::Given(&[])).unwrap();
+    assert_eq!(found.left_out.len(), 0);
+    found.discs
 }
 
 /// The square `[-1, 1]²` in the plane `z = 0`, as a lattice of `2 side²` triangles.

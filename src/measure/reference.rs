@@ -29,10 +29,10 @@ pub struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    /// Samples and draws an input.
+    /// Samples and draws an input; a cloud as the surface that it tells of, [`Model::Surface`].
     ///
     /// # Errors
-    /// [`crate::Error::Usage`] for a mesh without any area.
+    /// [`crate::Error::Usage`] for a mesh without any area, and for a [`Model::Cloud`].
     pub fn new(model: Model<'a>) -> Result<Self> {
         Self::standing_for(model, model.diagonal())
     }

@@ -3,7 +3,7 @@
 use image::{DynamicImage, RgbImage};
 use rayon::prelude::*;
 
-use super::holes::{self, Depths, HoleMap, Mark, Rules};
+use super::holes::{self, Depths, HoleMap, Mark};
 use super::image as difference;
 use super::measures::{Holes, Image, ViewMeasures};
 use super::views::{SIDE, View};
@@ -16,7 +16,7 @@ use crate::render::picture::{Picture, Visibility};
 /// PSNR of equal pictures, dB: JSON has no infinity.
 const MOST_DECIBELS: f64 = 99.0;
 
-/// The input from one view, drawn once for all files that are compared with it. Fourteen bytes
+/// The input from one view, drawn once for all files that are compared with it. Fifteen bytes
 /// a pixel.
 #[derive(Clone, Debug)]
 pub struct Drawn {
@@ -27,8 +27,6 @@ pub struct Drawn {
     /// Its normals.
     pub normals: RgbImage,
     depths: Depths,
-    /// Radius of the discs that a cloud is drawn as, model units; 0 for a mesh.
-    disc: f64,
 }
 
 impl Drawn {
@@ -38,13 +36,12 @@ impl Drawn {
     /// [`crate::Error::Usage`] for a view that cannot be drawn.
     pub fn new(input: &Prepared<'_>, view: View) -> Result<Self> {
         let own = input.survey(&view.camera, [SIDE; 2])?;
-        Ok(Self {
-            view,
-            shaded: opaque(own.shaded),
-            normals: opaque(own.normals),
-            depths: Depths::from(&own.visibility),
-            disc: input.disc(),
-        })
+        let depths = if input.is_exact() {
+            Depths::from(&own.visibility)
+        } else {
+            Depths::new([SIDE; 2], input.met(&view.camera, [SIDE; 2])?)
+        };
+        Ok(Self { view, shaded: opaque(own.shaded), normals: opaque(own.normals), depths })
     }
 }
 
@@ -82,9 +79,8 @@ pub struct Seen {
 /// [`crate::Error::Usage`] for a view that cannot be drawn.
 pub fn compare(asset: &Asset, input: &Drawn) -> Result<Compared> {
     let own = cpu::survey(asset, &input.view.camera, [SIDE; 2])?;
-    let rules = Rules::new(asset, input.disc, &input.view, SIDE);
     Ok(Compared {
-        holes: holes::compare(&input.depths, &own.visibility, &rules),
+        holes: holes::compare(&input.depths, &own.visibility, holes::behind(asset)),
         splats: own.visibility,
         shaded: opaque(own.shaded),
         normals: opaque(own.normals),

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::holes::{self, Depths, Rules};
+use super::holes::{self, Depths};
 use super::views::{SIDE, View, views};
 use crate::error::Result;
 use crate::model::asset::Asset;
@@ -18,14 +18,11 @@ use crate::render::eye::Eye;
 use crate::render::input::{Model, Prepared, Style};
 use crate::render::stops::Stops;
 
-/// A mesh is not drawn as discs.
-const NO_DISC: f64 = 0.0;
-
 /// Pixels that the bound spans at most in a view whose extra pixels count. A view along a needle magnifies
 /// it, and the bound with it: what stands out there is what the bound allows.
 const WIDEST: f64 = 4.0;
 
-/// What is known of a mesh in the views of [`views`] and in those between. Eight bytes a pixel.
+/// What is known of a mesh in the views of [`views`] and in those between. Nine bytes a pixel.
 pub struct Sights {
     looks: Vec<Look>,
     /// The splats that were last looked at.
@@ -53,7 +50,7 @@ impl Sights {
         let model = Model::Mesh(mesh);
         let input = Prepared::new(model, &Style::default());
         let look = |(view, outlined): (View, bool)| {
-            let depths = Depths::new([SIDE; 2], input.depths(&view.camera, [SIDE; 2])?);
+            let depths = Depths::new([SIDE; 2], input.met(&view.camera, [SIDE; 2])?);
             Ok(Look { view, depths, outlined, open: Vec::new(), beside: Vec::new() })
         };
         let own = views(model);
@@ -92,11 +89,11 @@ impl Look {
         let eye = Eye::new(&self.view.camera, &asset.frame, [SIDE; 2])?;
         let all = || vec![true; SIDE as usize * SIDE as usize];
         let asked = changed.map_or_else(all, |changed| Stops::new(changed, &eye).touched());
-        let rules = Rules::new(asset, NO_DISC, &self.view, SIDE);
-        let limits = holes::limits(&self.depths, &asked, &rules);
+        let behind = holes::behind(asset);
+        let limits = holes::limits(&self.depths, &asked, behind);
         let stops = Stops::new(asset, &eye);
         let stopped = stops.within(&limits);
-        let open = self.holes(&limits, &stopped, &stops, rules.behind, &eye);
+        let open = self.holes(&limits, &stopped, &stops, behind, &eye);
         renew(&mut self.open, open, &asked);
         if self.outlined && asset.max_error / self.view.height * f64::from(SIDE) <= WIDEST {
             renew(&mut self.beside, beside(&limits, &stopped, &eye), &asked);
@@ -200,7 +197,7 @@ mod tests {
         for view in views(model) {
             let depths = Depths::from(&input.visibility(&view.camera, [SIDE; 2])?);
             let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
-            let map = holes::compare(&depths, &splats, &Rules::new(asset, NO_DISC, &view, SIDE));
+            let map = holes::compare(&depths, &splats, holes::behind(asset));
             counts[0] += map.places(&[Mark::Missing, Mark::Through]).count();
             counts[1] += map.places(&[Mark::Extra]).count();
         }

@@ -3,7 +3,7 @@
 
 use glam::{DMat3, DVec2};
 
-use super::super::planted::{asset, ball, flat, mesh, sphere, square};
+use super::super::planted::{asset, ball, discs, flat, mesh, sphere, square};
 use super::*;
 use crate::render::input::Model;
 
@@ -29,7 +29,7 @@ fn a_lifted_sphere_is_off_by_its_lift() {
     assert!((overlap / caps - 1.0).abs() < 3e-3, "{overlap} for {caps}");
     let points = sphere(radius, 40_000, 0.01).iter().map(|splat| splat.center).collect();
     let cloud = mesh(points, vec![]).vertices;
-    let found = compared(&asset, Model::Cloud(&cloud)).unwrap();
+    let found = compared(&asset, Model::Surface(&cloud, &discs(&cloud))).unwrap();
     assert!((found.forward.rms - lift).abs() < 2e-5 && (found.backward.rms - lift).abs() < 4e-5, "{found:?}");
     assert!(found.overlap.is_none() && found.normal.p99_deg < 0.5);
 }
@@ -75,7 +75,7 @@ fn a_tilted_splat_is_off_by_its_angle() {
     let turned = compared(&asset(vec![splat.clone()]), Model::Mesh(&square(4))).unwrap();
     assert!((turned.normal.rms_deg - 173.0).abs() < 1e-6, "inside out: {turned:?}");
     let cloud = square(40).vertices;
-    let unsigned = compared(&asset(vec![splat]), Model::Cloud(&cloud)).unwrap();
+    let unsigned = compared(&asset(vec![splat]), Model::Surface(&cloud, &discs(&cloud))).unwrap();
     assert!((unsigned.normal.rms_deg - 7.0).abs() < 1e-3, "{unsigned:?}");
 }
 

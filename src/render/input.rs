@@ -1,21 +1,23 @@
 //! Draws the input, a mesh or a cloud, as an asset is drawn: same camera, light and shading.
 
-use glam::{DVec2, DVec3, Vec3};
+use std::borrow::Cow;
+
+use glam::{DVec3, Vec3};
 
 use super::camera::Camera;
 use super::constants::{self, MATTE};
 use super::cpu;
-use super::eye::{Eye, Ray};
+use super::disc_scene::{DiscScene, Extent};
+use super::eye::Eye;
 use super::facets::Facets;
 use super::mesh_normals::MeshNormals;
 use super::picture::{Picture, Survey, Visibility};
-use super::project::{self, Bound, Prism};
 use super::settings::Settings;
 use super::shade;
-use super::tiles::{self, Hit, Look, Mix, Scene};
+use super::tiles::{self, Mix};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
-use crate::model::intersect::{self, LocalRay};
+use crate::model::discs::{Disc, Discs};
 use crate::model::mesh::Mesh;
 
 /// What can be drawn besides an asset.
@@ -23,8 +25,10 @@ use crate::model::mesh::Mesh;
 pub enum Model<'a> {
     /// Triangles, drawn exactly.
     Mesh(&'a Mesh),
-    /// Points, drawn as small discs.
+    /// Points, drawn as small discs of one size.
     Cloud(&'a Cloud),
+    /// The surface that points tell of, a disc for each, drawn as these.
+    Surface(&'a Cloud, &'a Discs),
 }
 
 /// How the input is drawn where it leaves a choice.
@@ -32,7 +36,7 @@ pub enum Model<'a> {
 pub struct Style {
     /// Where a mesh's normals come from.
     pub normals: Normals,
-    /// Radius of a cloud's discs in input units; `None` takes [`disc_radius`].
+    /// Radius of the discs of a [`Model::Cloud`] in input units; `None` takes [`disc_radius`].
     pub point_radius: Option<f64>,
 }
 
@@ -61,7 +65,7 @@ impl Model<'_> {
     pub fn cloud(&self) -> &Cloud {
         match self {
             Self::Mesh(mesh) => &mesh.vertices,
-            Self::Cloud(cloud) => cloud,
+            Self::Cloud(cloud) | Self::Surface(cloud, _) => cloud,
         }
     }
 
@@ -100,8 +104,17 @@ pub struct Prepared<'a> {
 
 enum Kind<'a> {
     Mesh(&'a Mesh, MeshNormals<'a>),
-    /// With the radius of its discs, model units.
-    Cloud(&'a Cloud, f64),
+    Cloud(&'a Cloud, Cow<'a, Discs>),
+}
+
+/// What rays surely meet of a model, and may meet: the same of a mesh, not of a cloud. Rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Met {
+    /// How deep what each pixel's ray surely meets first lies at most, model units; infinite where it may
+    /// meet nothing.
+    pub surely: Vec<f64>,
+    /// Whether the ray may meet anything.
+    pub perhaps: Vec<bool>,
 }
 
 impl<'a> Prepared<'a> {
@@ -111,18 +124,10 @@ impl<'a> Prepared<'a> {
         let diagonal = model.diagonal();
         let kind = match model {
             Model::Mesh(mesh) => Kind::Mesh(mesh, MeshNormals::new(mesh, style.normals)),
-            Model::Cloud(cloud) => Kind::Cloud(cloud, disc(cloud, style, diagonal)),
+            Model::Cloud(cloud) => Kind::Cloud(cloud, Cow::Owned(even(cloud, style, diagonal))),
+            Model::Surface(cloud, discs) => Kind::Cloud(cloud, Cow::Borrowed(discs)),
         };
         Self { kind, radius: 0.5 * diagonal }
-    }
-
-    /// Radius of the discs that a cloud is drawn as, model units; 0 for a mesh.
-    #[must_use]
-    pub fn disc(&self) -> f64 {
-        match self.kind {
-            Kind::Mesh(..) => 0.0,
-            Kind::Cloud(_, radius) => radius,
-        }
     }
 
     /// As [`render`].
@@ -136,8 +141,9 @@ impl<'a> Prepared<'a> {
             Kind::Mesh(mesh, normals) => {
                 cpu::picture(&Facets::new(mesh, &eye, normals), &eye, mix, settings, radius)
             }
-            Kind::Cloud(cloud, disc) => {
-                cpu::picture(&Discs { cloud, eye: &eye, radius: *disc }, &eye, mix, settings, radius)
+            Kind::Cloud(cloud, discs) => {
+                let scene = DiscScene::new(cloud, discs, &eye, Extent::Margin);
+                cpu::picture(&scene, &eye, mix, settings, radius)
             }
         }
     }
@@ -150,19 +156,36 @@ impl<'a> Prepared<'a> {
         let eye = self.eye(camera, &Settings::plain(size))?;
         Ok(match &self.kind {
             Kind::Mesh(mesh, normals) => cpu::nearest(&Facets::new(mesh, &eye, normals), &eye),
-            Kind::Cloud(cloud, disc) => cpu::nearest(&Discs { cloud, eye: &eye, radius: *disc }, &eye),
+            Kind::Cloud(cloud, discs) => {
+                cpu::nearest(&DiscScene::new(cloud, discs, &eye, Extent::Margin), &eye)
+            }
         })
     }
 
-    /// How deep what each pixel's ray meets first lies, rows from the top; infinite where it meets nothing.
+    /// Whether rays surely meet all that they may.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        matches!(self.kind, Kind::Mesh(..))
+    }
+
+    /// What rays meet, surely or perhaps.
+    ///
+    /// A cloud tells its surface no better than its discs do. Across one that is seen so flat that the
+    /// surface may turn away from the eye over it, the outline runs: somewhere, and the discs stand out
+    /// there. So rays may meet such a disc, but not surely; nor do they one that is open beyond its margin,
+    /// or any where it reaches out into a gap between the points.
+    /// What they surely meet lies as deep as it may, off the disc's plane.
     ///
     /// # Errors
     /// As [`cpu::render`].
-    pub fn depths(&self, camera: &Camera, size: [u32; 2]) -> Result<Vec<f64>> {
+    pub fn met(&self, camera: &Camera, size: [u32; 2]) -> Result<Met> {
         let eye = self.eye(camera, &Settings::plain(size))?;
         Ok(match &self.kind {
-            Kind::Mesh(mesh, normals) => tiles::depths(&Facets::new(mesh, &eye, normals), &eye),
-            Kind::Cloud(cloud, disc) => tiles::depths(&Discs { cloud, eye: &eye, radius: *disc }, &eye),
+            Kind::Mesh(mesh, normals) => {
+                let surely = tiles::depths(&Facets::new(mesh, &eye, normals), &eye);
+                Met { perhaps: surely.iter().map(|depth| depth.is_finite()).collect(), surely }
+            }
+            Kind::Cloud(cloud, discs) => DiscScene::new(cloud, discs, &eye, Extent::Reach).met(),
         })
     }
 
@@ -175,8 +198,8 @@ impl<'a> Prepared<'a> {
         let (mix, radius) = (self.mix(), self.radius);
         match &self.kind {
             Kind::Mesh(mesh, normals) => cpu::survey_of(&Facets::new(mesh, &eye, normals), &eye, mix, radius),
-            Kind::Cloud(cloud, disc) => {
-                cpu::survey_of(&Discs { cloud, eye: &eye, radius: *disc }, &eye, mix, radius)
+            Kind::Cloud(cloud, discs) => {
+                cpu::survey_of(&DiscScene::new(cloud, discs, &eye, Extent::Margin), &eye, mix, radius)
             }
         }
     }
@@ -192,19 +215,31 @@ impl<'a> Prepared<'a> {
     /// Triangles are drawn as they are. Discs of one surface overlap by less than their radius
     /// along the normal.
     fn mix(&self) -> Mix {
-        match self.kind {
+        match &self.kind {
             Kind::Mesh(..) => Mix::Nearest,
-            Kind::Cloud(_, radius) => Mix::Band { band: radius, agree: constants::agree_cosine() },
+            Kind::Cloud(_, discs) => Mix::Band { band: mean_margin(discs), agree: constants::agree_cosine() },
         }
     }
 }
 
-/// Radius of a cloud's discs, model units.
-fn disc(cloud: &Cloud, style: &Style, diagonal: f64) -> f64 {
+/// Mean radius of discs, model units.
+fn mean_margin(discs: &Discs) -> f64 {
+    let sum: f64 = discs.all().iter().map(|disc| f64::from(disc.margin)).sum();
+    sum / discs.all().len().max(1) as f64
+}
+
+/// Discs of one size around all points, at right angles to sound normals, else facing the eye.
+fn even(cloud: &Cloud, style: &Style, diagonal: f64) -> Discs {
+    let count = cloud.positions.len();
     let given = style.point_radius.map(|radius| radius / cloud.frame.scale());
-    let radius = given.unwrap_or_else(|| disc_radius(diagonal, cloud.positions.len()));
+    let radius = given.unwrap_or_else(|| disc_radius(diagonal, count));
     // A single point has no diagonal: any radius that shows it will do.
-    if radius > 0.0 { radius } else { 0.1 }
+    let margin = if radius > 0.0 { radius as f32 } else { 0.1 };
+    let disc = |point| {
+        let normal = given_normal(cloud, point).unwrap_or(DVec3::ZERO).as_vec3();
+        Disc { normal, margin, ..Disc::default() }
+    };
+    Discs::new((0..count).map(disc).collect(), &[])
 }
 
 /// Discs that just cover a surface of area `diagonal²`, about that of a cube or a ball, if
@@ -223,60 +258,4 @@ pub(super) fn color(cloud: &Cloud, point: usize) -> Vec3 {
 /// A point's unit normal, if the file gives a sound one.
 pub(super) fn given_normal(cloud: &Cloud, point: usize) -> Option<DVec3> {
     cloud.normals.get(point)?.as_dvec3().try_normalize()
-}
-
-/// A cloud before a camera.
-struct Discs<'a> {
-    cloud: &'a Cloud,
-    eye: &'a Eye,
-    radius: f64,
-}
-
-impl Discs<'_> {
-    fn center(&self, item: usize) -> DVec3 {
-        self.eye.to_view(self.cloud.positions[item].as_dvec3())
-    }
-
-    /// The point's normal in view coordinates; without one the disc faces the eye.
-    fn normal(&self, item: usize) -> DVec3 {
-        given_normal(self.cloud, item).map_or(-DVec3::Z, |normal| self.eye.turn(normal))
-    }
-}
-
-impl Scene for Discs<'_> {
-    fn len(&self) -> usize {
-        self.cloud.positions.len()
-    }
-
-    fn bound(&self, item: usize) -> Option<Bound> {
-        let normal = self.normal(item);
-        let (u, v) = normal.any_orthonormal_pair();
-        let half_axes = [self.radius * u, self.radius * v];
-        project::bound(&Prism { center: self.center(item), half_axes, normal, low: 0.0, high: 0.0 }, self.eye)
-    }
-
-    fn hit(&self, item: usize, ray: &Ray) -> Option<Hit> {
-        let (center, normal) = (self.center(item), self.normal(item));
-        let lateral = (ray.at(center.z) - center.truncate()).extend(0.0);
-        let local = LocalRay {
-            origin: DVec3::new(0.0, 0.0, lateral.dot(normal)),
-            direction: DVec3::new(0.0, 0.0, ray.direction().dot(normal)),
-        };
-        let s = intersect::plane_root(&local, self.radius);
-        if s > self.radius {
-            return None;
-        }
-        let ellipse = (lateral + s * ray.direction()).length_squared() / (self.radius * self.radius);
-        let depth = center.z + s;
-        (ellipse <= 1.0 && depth >= self.eye.near).then_some(Hit {
-            depth,
-            at: DVec2::ZERO,
-            ellipse,
-            gives_way: 0.0,
-        })
-    }
-
-    fn look(&self, item: usize, _at: DVec2) -> Look {
-        Look { normal: self.normal(item), color: color(self.cloud, item) }
-    }
 }

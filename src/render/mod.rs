@@ -17,6 +17,7 @@ pub mod camera;
 pub mod constants;
 pub mod cpu;
 pub mod device;
+mod disc_scene;
 pub mod eye;
 mod facets;
 #[cfg(feature = "gpu")]

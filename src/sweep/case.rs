@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
 use crate::bake::{Edges, Kept, Options, Silent, feature_lines, kept, model_error};
-use crate::deliver::{deliver, model};
+use crate::deliver::{deliver, model, surface};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
 use crate::measure::{self, Reference, measure};
@@ -53,7 +53,7 @@ impl<'a> Subject<'a> {
     /// # Errors
     /// As [`Reference::new`].
     pub(super) fn new(input: &'a Input, kept: &'a Kept<'a>, edges: Edges) -> Result<Self> {
-        let whole = Reference::standing_for(model(&kept.input), model(input).diagonal())?;
+        let whole = Reference::standing_for(surface(kept), model(input).diagonal())?;
         let reference = Reference { outliers: kept.outliers, ..whole };
         let view = reference.views().find(|view| view.name == PICTURE_VIEW);
         let iso = || iso(&input.cloud().frame, reference.model.diagonal(), PICTURE_SIZE);

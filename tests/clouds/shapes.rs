@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use qsplat::bake::Silent;
 use qsplat::bake::{MaxError, Normals, kept, meant};
-use qsplat::deliver::{deliver, model};
+use qsplat::deliver::{self, deliver};
 use qsplat::error::Error;
 use qsplat::ingest::Input;
 use qsplat::measure::{Reference, Subject, measure};
@@ -163,7 +163,7 @@ fn what_is_measured_leaves_out_what_the_bake_did_and_keeps_the_bound() {
     }
     let far = |p: &Vec3| (input.cloud().frame.to_input(p.as_dvec3()).length() - 1.0).abs() > 0.25;
     assert_eq!(kept.input.cloud().positions.iter().filter(|p| far(p)).count(), 0, "five spacings off");
-    let reference = Reference::standing_for(model(&kept.input), made.asset.diagonal).unwrap();
+    let reference = Reference::standing_for(deliver::surface(&kept), made.asset.diagonal).unwrap();
     let reference = Reference { outliers: kept.outliers, ..reference };
     let subject = Subject { bytes: &made.bytes, asset: &made.asset, against: &reference, lines: None };
     let measures = measure(&subject).unwrap();

@@ -8,6 +8,7 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 
 use super::{Drawn, Seen, seen};
 use crate::measure::measures::ViewMeasures;
+use crate::measure::planted::discs;
 use crate::measure::views::{SIDE, View, views};
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::clip_curve::ClipCurve;
@@ -166,13 +167,14 @@ fn a_hole_before_another_sheet_is_seen_through() {
 }
 
 #[test]
-fn a_cloud_s_overhang_is_no_fault_and_its_holes_are() {
+fn what_is_unknown_of_a_cloud_is_no_fault_and_its_holes_are() {
     let count = 40_u16;
     let place = |n: u16| f32::from(n) / f32::from(count - 1) - 0.5;
     let positions = (0..count * count).map(|n| Vec3::new(place(n % count), place(n / count), 0.0));
     let normals = vec![Vec3::Z; usize::from(count * count)];
     let cloud = Cloud { positions: positions.collect(), normals, ..Cloud::default() };
-    let model = Model::Cloud(&cloud);
+    let discs = discs(&cloud);
+    let model = Model::Surface(&cloud, &discs);
     let whole = look(squares(0.0), model);
     assert_eq!((whole.holes.missing, whole.holes.extra, whole.holes.through), (0, 0, 0));
     let mut splats = squares(0.0);
