@@ -5,6 +5,7 @@
 mod extremes;
 mod invariance;
 mod lines;
+mod measured;
 mod noise;
 mod scene;
 mod shapes;
