@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn each_case_is_told_from_the_others() {
         let straight = line(&[(-3.0, 0.1), (0.0, 0.1), (3.0, 0.1)], false);
-        assert_eq!(of(&[straight.clone()]), [false; 5]);
+        assert_eq!(of(std::slice::from_ref(&straight)), [false; 5]);
         let beyond = line(&[(-3.0, 2.0), (3.0, 2.0)], false);
         assert_eq!(of(&[straight.clone(), beyond]), [false; 5]);
         let other = line(&[(3.0, -0.5), (-3.0, -0.5)], false);
