@@ -47,18 +47,14 @@ impl ClipTolerance {
         (by > self.outset - self.miss).then_some(by)
     }
 
-    /// A share of all of it.
+    /// A share of all of it but for the rounding, which stays: curves still lie so far outside that none
+    /// cuts the surface once it is rounded.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
         let &Self { outset, miss, least, edge, rounding, clips } = self;
-        Self {
-            outset: share * outset,
-            miss: share * miss,
-            least: share * least,
-            edge: share * edge,
-            rounding: share * rounding,
-            clips,
-        }
+        let miss = share * miss;
+        let outset = (share * outset).max(miss + rounding);
+        Self { outset, miss, least: share * least, edge: (share * edge).max(outset + miss), rounding, clips }
     }
 }
 
@@ -246,7 +242,8 @@ fn extend(arc: &[DVec2], radii: DVec2) -> Option<Vec<DVec2>> {
 ///
 /// Along every side inside the ellipse, the place itself must not be cut and the place moved
 /// outward by `outset + miss` must be; within that distance of a corner the second is not
-/// asked, since there outward is no single direction.
+/// asked, since there outward is no single direction. No end of a side may be cut once the curves are
+/// rounded.
 #[must_use]
 pub fn follows(
     line: &[DVec2],
@@ -263,7 +260,9 @@ pub fn follows(
         let length = a.distance(b);
         let out = -(b - a).perp().normalize_or_zero();
         let clear = (2.0 * reach / length).min(0.5);
-        [clear, 0.5, 1.0 - clear].into_iter().map(|t| a.lerp(b, t)).all(|p| {
+        let is_kept = |p: DVec2| !inside(p) || !cuts(p + tolerance.rounding * out);
+        let ends = is_kept(a) && is_kept(b);
+        ends && [clear, 0.5, 1.0 - clear].into_iter().map(|t| a.lerp(b, t)).all(|p| {
             let (inner, outer) = (p + tolerance.least * out, p + reach * out);
             (!inside(inner) || !cuts(inner)) && (!inside(outer) || cuts(outer))
         })

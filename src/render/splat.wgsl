@@ -194,12 +194,15 @@ fn part(cap: Cap) -> Part {
     let visible = normalize(surface.xyz);
     let hit = hit(cap, ray);
     let direction = vec3<f32>(ray.slope, 1.0);
-    // What gives way is of the other side of an edge, or of this one and no better.
-    let better = hit.found && gives_way(cap, hit) <= share + SHARE_ROUNDING;
-    if !better || hit.depth > surface.w + depth_band(visible, direction) {
+    let band = depth_band(visible, direction);
+    if !hit.found || hit.depth > surface.w + band {
         return Part(false, 0.0, vec3<f32>(0.0));
     }
     let normal = normal_at(cap, hit.uv, direction);
+    // What gives way by more is of the other side of an edge, or of this one and no better.
+    if gives_way(cap, hit) * depth_band(normal, direction) > (share + SHARE_ROUNDING) * band {
+        return Part(false, 0.0, vec3<f32>(0.0));
+    }
     return Part(dot(normal, visible) >= AGREE_COSINE, hit.ellipse, normal);
 }
 

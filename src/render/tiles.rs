@@ -282,7 +282,7 @@ impl Tile<'_> {
             self.samples(&rects[item], |place, ray| {
                 let Some(pixel) = &pixels[place] else { return };
                 let Some(hit) = scene.hit(item, ray) else { return };
-                // What gives way is of the other side of an edge, or of this one and no better.
+                // What gives way by more is of the other side of an edge, or of this one and no better.
                 if hit.depth <= limits[place] && hit.gives_way <= pixel.gives_way {
                     let look = scene.look(item, hit.at);
                     let normal = composite::face(look.normal, pixel.direction);
