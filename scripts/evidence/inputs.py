@@ -79,7 +79,9 @@ def folder():
 def chosen(names, quick):
     """The models that are asked for."""
     wanted = [model for model in MODELS if not quick or model.name in QUICK]
-    return [model for model in wanted if not names or model.names() & set(names)]
+    # A model's own name stands for it alone, that of a file for all that is made of it.
+    files = set(names) - {model.name for model in MODELS}
+    return [model for model in wanted if not names or model.name in names or model.names() & files]
 
 
 def find(model, runs):
