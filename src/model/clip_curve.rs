@@ -269,6 +269,7 @@ mod tests {
                         let shrunk = Conic { p1, p2, p3, rho };
                         let found = shrunk.distance(small(q), scale);
                         assert!(found >= 0.8 * distance - 1e-4, "rho {rho} {q}: {found}");
+                        // To first order; beside the ends, where the tangents come near, less exactly.
                         let most = if (0.11..0.89).contains(&t) { 1.25 } else { 1.75 };
                         assert!(found <= most * distance + 1e-9, "rho {rho} {q}: {found}");
                     }

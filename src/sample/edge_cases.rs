@@ -10,13 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::candidates::Regions;
 use super::cover::Cover;
 use super::grow::Grower;
-use super::outline::{Outline, outlines};
+use super::outline::Outline;
 use super::settle::Candidate;
 use crate::analyse::surface::{NONE, Surface};
 use crate::fit::clip::Clips;
 use crate::fit::ellipse::{Run, runs};
 use crate::fit::offset::{CORNER_SINE, is_corner};
-use crate::fit::pose::Pose;
 use crate::model::polyline::nearest_on;
 
 /// Splats by what the lines and borders do that run through their ellipses, and places by what meets there.
@@ -64,17 +63,18 @@ impl Cover {
     /// Counts the cases of the chosen splats, last resorts aside, which are cut to one piece.
     #[must_use]
     pub fn edge_cases(&self, grower: &Grower, regions: &Regions) -> EdgeCases {
-        let mut cases = meetings(grower.surface);
         let splats = self.chosen.par_iter().map(|&index| within(&self.candidates[index], grower, regions));
-        for within in splats.collect::<Vec<_>>() {
-            cases.several_lines += u64::from(within.several_lines);
-            cases.inflections += u64::from(within.inflection);
-            cases.corners += u64::from(within.corner);
-            cases.curved_arms += u64::from(within.curved_arm);
-            cases.loops += u64::from(within.looped);
-            cases.several_curves += u64::from(within.several_curves);
+        let splats: Vec<Within> = splats.collect();
+        let count = |is: fn(&Within) -> bool| splats.iter().filter(|within| is(within)).count() as u64;
+        EdgeCases {
+            several_lines: count(|within| within.several_lines),
+            inflections: count(|within| within.inflection),
+            corners: count(|within| within.corner),
+            curved_arms: count(|within| within.curved_arm),
+            loops: count(|within| within.looped),
+            several_curves: count(|within| within.several_curves),
+            ..meetings(grower.surface)
         }
-        cases
     }
 }
 
@@ -103,18 +103,12 @@ fn meetings(surface: &Surface) -> EdgeCases {
 }
 
 fn within(candidate: &Candidate, grower: &Grower, regions: &Regions) -> Within {
-    let (surface, splat) = (grower.surface, &candidate.splat);
-    let Some(&piece) = candidate.pieces.first().filter(|_| !candidate.last_resort) else {
+    let (splat, tolerance) = (&candidate.splat, &grower.budget.clip);
+    let Some(outlines) = regions.with(|region| candidate.outlines(grower, region)) else {
         return Within::default();
     };
-    let pose = Pose { center: splat.center, axes: splat.axes };
-    let found = regions.with(|region| {
-        let reached = region.gather(surface, &pose, splat.radii, &surface.pieces[piece as usize]);
-        if reached { outlines(surface, region, &pose, grower.open) } else { Vec::new() }
-    });
-    let tolerance = grower.budget.clip.edge;
-    let several_curves = splat.clips.len() > 1 && grower.budget.clip.clips != Clips::Partners;
-    Within { several_curves, ..cases_of(&found, splat.radii, tolerance) }
+    let several_curves = splat.clips.len() > 1 && tolerance.clips != Clips::Partners;
+    Within { several_curves, ..cases_of(&outlines, splat.radii, tolerance.edge) }
 }
 
 /// What lines do inside an ellipse; bends of less than `tolerance` are none.
@@ -123,8 +117,6 @@ fn cases_of(outlines: &[Outline], radii: DVec2, tolerance: f64) -> Within {
         .iter()
         .filter_map(|outline| runs(&outline.points, outline.closed, radii))
         .flatten()
-        // Of an outline that is nowhere inside, nothing runs through.
-        .filter(|run| !run.closed || run.points.iter().any(|point| (*point / radii).length_squared() < 1.0))
         .collect();
     let mut within = Within { several_lines: all.len() > 1, ..Within::default() };
     for run in &all {

@@ -6,6 +6,7 @@ use super::backing::{Backing, Look};
 use super::facet::extremes;
 use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
+use super::outline::{Outline, outlines};
 use super::region::Region;
 use crate::fit::clip::Care;
 use crate::fit::pose::Pose;
@@ -151,6 +152,16 @@ impl Candidate {
     pub(super) fn covers(&self, pieces: impl IntoIterator<Item = u32>) -> bool {
         let mut own = self.pieces.iter();
         pieces.into_iter().all(|piece| own.find(|own| **own >= piece) == Some(&piece))
+    }
+
+    /// What it is to be cut along, of the region that it reaches over, which is gathered for that; `None` for
+    /// one of last resort, which is cut otherwise.
+    pub(super) fn outlines(&self, grower: &Grower, region: &mut Region) -> Option<Vec<Outline>> {
+        let (surface, splat) = (grower.surface, &self.splat);
+        let pose = Pose { center: splat.center, axes: splat.axes };
+        let seeds = surface.pieces[*self.pieces.first()? as usize];
+        let reached = !self.last_resort && region.gather(surface, &pose, splat.radii, &seeds);
+        reached.then(|| outlines(surface, region, &pose, grower.open))
     }
 }
 

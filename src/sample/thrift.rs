@@ -6,7 +6,7 @@ use super::backing::{Backing, Look};
 use super::candidates::Regions;
 use super::cover::Cover;
 use super::grow::{Cut, Grower};
-use super::outline::{Outline, outlines};
+use super::outline::Outline;
 use super::region::Region;
 use super::settle::{Candidate, ROUNDED_SLACK};
 use crate::error::Result;
@@ -79,14 +79,10 @@ impl Trial for Cuts<'_> {
 
 /// A candidate without its clip curves; `None` for one of last resort, which is cut otherwise.
 fn uncut<'a>(candidate: &'a Candidate, grower: &'a Grower, region: &mut Region) -> Option<Uncut<'a>> {
-    let (surface, splat) = (grower.surface, &candidate.splat);
+    let splat = &candidate.splat;
+    let outlines = candidate.outlines(grower, region)?;
     let pose = Pose { center: splat.center, axes: splat.axes };
-    let seeds = surface.pieces[*candidate.pieces.first()? as usize];
-    if candidate.last_resort || !region.gather(surface, &pose, splat.radii, &seeds) {
-        return None;
-    }
     let backing = Backing::of(grower, &pose, splat.radii, splat.curvature, region, Look::Fine);
-    let outlines = outlines(surface, region, &pose, grower.open);
     let (covered, strayed) = (covered(candidate, grower), strayed(splat, grower, region));
     Some(Uncut { splat, outlines, backing, covered, strayed })
 }

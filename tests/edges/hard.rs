@@ -12,6 +12,10 @@ use super::views;
 /// Share of the diagonal.
 const BOUND: f64 = 1e-3;
 
+/// Pixels of all views that tips narrower than one may show beside the outline: two tips, each in two opposite
+/// views.
+const TIP_PIXELS: u64 = 4;
+
 /// A facet takes at most so many splats on the average: one, but for what views ask to mend.
 const SPLATS_A_FACET: usize = 2;
 
@@ -23,7 +27,7 @@ fn check(Shape { name, input, edges }: Shape) -> (Vec<String>, usize) {
     assert!(found.has_edge(), "{name}: no line was followed");
     let mut seen = views::compare(mesh, &delivery.asset, SIDE);
     eprintln!("{name}: {found}\n    {seen}");
-    if name == shapes::TIPS {
+    if name == shapes::TIPS && seen.extra <= TIP_PIXELS {
         seen.extra = 0;
     }
     let faults = found.faults().into_iter().chain(seen.faults());
