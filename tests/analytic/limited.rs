@@ -30,7 +30,7 @@ fn limited(name: &str, share: f64, shapes: Shapes, clips: Clips) -> Asset {
     assert!(stray <= RIM, "{name}: splats stray {stray:.3} bounds from the mesh");
     let [own, mut other] = [SIDE, COARSER].map(|side| views::compare(&mesh, &asset, side));
     eprintln!("{name}: {other}");
-    if other.through as f64 <= SLITS * other.compared as f64 {
+    if shapes == Shapes::Flat && other.through as f64 <= SLITS * other.compared as f64 {
         other.through = 0;
     }
     let faults = [own, other].map(|seen| seen.faults()).concat();
