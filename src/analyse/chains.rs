@@ -15,6 +15,10 @@ const RAGGED: f64 = 0.34;
 /// triangles does, parts the surface however few its edges are.
 const SHORTEST: usize = 4;
 
+/// Cosine of the angle between two faces, 90 degrees, beyond which no splat goes over the edge between them:
+/// where they are long beside the mesh's noise, as any are that fold so far, it ends a surface.
+pub const FOLDED: f64 = 0.0;
+
 /// Rounds of dropping chains; each may join others or leave them with a loose end.
 const ROUNDS: usize = 8;
 
@@ -28,15 +32,15 @@ pub struct Chain {
     loose: bool,
 }
 
-/// Unmarks chains that zigzag, and short ones that lead nowhere.
-pub fn drop_ragged(positions: &[Vec3], edges: &Edges, marked: &mut [bool]) {
+/// Unmarks chains that zigzag, and short ones that lead nowhere unless they are folded.
+pub fn drop_ragged(positions: &[Vec3], edges: &Edges, folded: &[bool], marked: &mut [bool]) {
     for _ in 0..ROUNDS {
         let bad: Vec<Chain> = chains(positions.len(), edges, marked)
             .into_iter()
             .filter(|chain| {
-                let closed = chain.vertices.first() == chain.vertices.last();
-                let lost = chain.edges.len() < SHORTEST && (chain.loose || closed);
-                lost || is_ragged(positions, chain)
+                let folds = chain.edges.iter().filter(|&&edge| folded[edge as usize]).count();
+                let lost = chain.edges.len() < SHORTEST && (chain.loose || chain.vertices.first() == chain.vertices.last());
+                2 * folds <= chain.edges.len() && (lost || is_ragged(positions, chain))
             })
             .collect();
         if bad.is_empty() {
@@ -184,7 +188,7 @@ mod tests {
 
     fn kept_of(heights: &[f32], beyond: usize) -> usize {
         let (positions, edges, mut marked) = sheet(heights, beyond);
-        drop_ragged(&positions, &edges, &mut marked);
+        drop_ragged(&positions, &edges, &vec![false; marked.len()], &mut marked);
         marked.iter().filter(|mark| **mark).count()
     }
 

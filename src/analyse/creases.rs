@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::chains;
 use super::edge_paths::{EdgePaths, STRAIGHT};
-use super::edges::{Edges, crease_cosine, face_normals};
+use super::edges::{Edge, Edges, crease_cosine, face_normals};
 use super::weld::Welded;
 
 /// A crease goes on, from where it is sharp enough by itself, along edges at least this
@@ -25,7 +25,7 @@ pub fn weak_cosine(degrees: f64) -> f64 {
 ///
 /// Edges that do not join two agreeing faces are not marked: they end the surface anyway.
 #[must_use]
-pub fn creases(welded: &Welded, edges: &Edges, degrees: f64) -> Vec<bool> {
+pub fn creases(welded: &Welded, edges: &Edges, degrees: f64, shortest: f64) -> Vec<bool> {
     let normals = face_normals(&welded.positions, &welded.triangles);
     let cosines: Vec<Option<f64>> =
         edges.edges.par_iter().map(|edge| crease_cosine(edges, edge, &normals)).collect();
@@ -36,7 +36,12 @@ pub fn creases(welded: &Welded, edges: &Edges, degrees: f64) -> Vec<bool> {
     let mut marked: Vec<bool> = sharper(degrees).collect();
     let weak: Vec<bool> = sharper(WEAK_SHARE * degrees).collect();
     carry_on(welded, edges, &weak, &mut marked);
-    chains::drop_ragged(&welded.positions, edges, &mut marked);
+    let is_line = |(edge, cosine): (&Edge, &Option<f64>)| {
+        let [a, b] = welded.places(edge.ends);
+        cosine.is_some_and(|cosine| cosine < chains::FOLDED) && a.distance(b) >= shortest
+    };
+    let folded: Vec<bool> = edges.edges.iter().zip(&cosines).map(is_line).collect();
+    chains::drop_ragged(&welded.positions, edges, &folded, &mut marked);
     marked
 }
 
@@ -112,7 +117,7 @@ mod tests {
     fn along_the_fold(fold: f32) -> usize {
         let welded = wedge(fold);
         let edges = Edges::of(&welded.triangles);
-        let marked = creases(&welded, &edges, 40.0);
+        let marked = creases(&welded, &edges, 40.0, f64::INFINITY);
         let on_fold = |place: DVec3| place.x == 0.0 && place.y <= 0.0;
         let folds = edges.edges.iter().map(|edge| welded.places(edge.ends).into_iter().all(on_fold));
         folds.zip(marked).filter(|(fold, mark)| *fold && *mark).count()

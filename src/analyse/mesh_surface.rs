@@ -153,7 +153,7 @@ pub(super) fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
     let edges = Edges::of(&welded.triangles);
     let (marked, matched) = match features {
         Features::Sharp { degrees, shortest } => {
-            let mut marked = creases(welded, &edges, *degrees);
+            let mut marked = creases(welded, &edges, *degrees, *shortest);
             chains::drop_short(&welded.positions, &edges, *shortest, &mut marked);
             (marked, None)
         }

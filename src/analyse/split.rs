@@ -112,7 +112,7 @@ mod tests {
     fn a_cube_falls_into_six_squares() {
         let cube = cube();
         let found = Edges::of(&cube.triangles);
-        let marked = creases(&cube, &found, 40.0);
+        let marked = creases(&cube, &found, 40.0, f64::INFINITY);
         assert_eq!(marked.iter().filter(|m| **m).count(), 12);
         let surface = split(&cube, &marked);
         assert_eq!(surface.points.len(), 24);

@@ -126,7 +126,8 @@ impl Patches<'_> {
                 let over = misfit(OVER * depth, true, &[left.face, right.face]);
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
-        }) == Some(true)
+        })
+        .unwrap_or(self.normals[left.face as usize].dot(self.normals[right.face as usize]) < super::chains::FOLDED)
     }
 
     /// Places within a disc on the faces that the surface joins to some, and the mean of those
