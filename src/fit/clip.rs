@@ -269,39 +269,43 @@ pub fn follows(
     })
 }
 
-/// Fewest and most places looked at along a curve.
+/// Fewest and most places looked at along a curve on a quick look.
 const PLACES: (f64, f64) = (16.0, 256.0);
 
 /// Halvings of a step between two such places that find where the border leaves the curve: to a
 /// thousandth of a step, which is at most a few bounds long.
 const HALVINGS: usize = 10;
 
-/// Whether clip curves bound nothing but outlines: the other side of [`follows`].
+/// Places along the border that clip curves give a splat, ends and tips among them, `finer` times as many as
+/// on a quick look: one by one at which no other curve cuts.
 ///
-/// A place on a curve that no other curve cuts away is a border of what is kept. It must lie
-/// along an outline, or the splat would go on beyond its surface. So must the tip where the border goes
-/// over to another curve: at an acute corner it lies farther out than all else.
-pub fn bounds_only(
-    along: impl Fn(DVec2) -> bool,
+/// Each must lie along an outline, or the splat would go on beyond its surface: the other side of
+/// [`follows`]. So must the tip where the border goes over to another curve: at an acute corner it lies
+/// farther out than all else.
+pub fn border(
     conics: &[Conic],
     radii: DVec2,
     tolerance: &ClipTolerance,
-) -> bool {
+    finer: f64,
+) -> impl Iterator<Item = DVec2> {
     let apart = tolerance.reach();
-    conics.iter().enumerate().all(|(index, conic)| {
+    conics.iter().enumerate().flat_map(move |(index, conic)| {
         let length = conic.p1.distance(conic.p2) + conic.p2.distance(conic.p3);
         let length = if conic.rho == 0.0 { conic.p1.distance(conic.p3) } else { length };
-        let step = apart.min(length / PLACES.0).max(length / PLACES.1);
-        let bounds = |p: DVec2| {
+        let step = apart.min(length / PLACES.0).max(length / PLACES.1) / finer;
+        let bounds = move |p: DVec2| {
             holds(p, radii)
                 && !conics.iter().enumerate().any(|(other, conic)| other != index && conic.cuts(p))
         };
         let places: Vec<(DVec2, bool)> = conic.walk(step).into_iter().map(|p| (p, bounds(p))).collect();
-        let tips = places.windows(2).filter_map(|ends| match ends {
-            &[(kept, true), (cut, false)] | &[(cut, false), (kept, true)] => Some(tip(kept, cut, bounds)),
-            _ => None,
-        });
-        places.iter().filter(|(_, bounds)| *bounds).map(|(p, _)| *p).chain(tips).all(&along)
+        let tips: Vec<DVec2> = places
+            .windows(2)
+            .filter_map(|ends| match ends {
+                &[(kept, true), (cut, false)] | &[(cut, false), (kept, true)] => Some(tip(kept, cut, bounds)),
+                _ => None,
+            })
+            .collect();
+        places.into_iter().filter(|(_, bounds)| *bounds).map(|(p, _)| p).chain(tips)
     })
 }
 
@@ -349,7 +353,8 @@ mod tests {
     fn a_curve_that_strays_along_its_arm_or_at_its_end_does_not_follow() {
         let (radii, rho) = (DVec2::ONE, 0.995);
         let conic = Conic { p1: DVec2::NEG_X, p2: DVec2::new(0.0, 0.3), p3: DVec2::X, rho };
-        let follows = |along: &dyn Fn(DVec2) -> bool| bounds_only(along, &[conic], radii, &TOLERANCE);
+        let follows =
+            |along: &dyn Fn(DVec2) -> bool| border(&[conic], radii, &TOLERANCE, 1.0).all(|p| along(p));
         assert!(follows(&|_| true));
         assert!(!follows(&|p| !(-0.7..-0.69).contains(&p.x)), "in the middle of an arm");
         assert!(!follows(&|p| p.distance(DVec2::NEG_X) > 1e-6), "where it meets the rim");
@@ -363,7 +368,7 @@ mod tests {
         let out = |slope: f64| exit(tip, DVec2::new(1.0, slope), DVec2::ONE).unwrap_or(tip);
         let back = |slope: f64| exit(tip, DVec2::new(-1.0, slope), DVec2::ONE).unwrap_or(tip);
         let conics = [chord(back(-0.5), out(0.5)), chord(out(-0.5), back(0.5))];
-        let within = |far: f64| bounds_only(|p| p.x <= 0.6 + far, &conics, DVec2::ONE, &TOLERANCE);
+        let within = |far: f64| border(&conics, DVec2::ONE, &TOLERANCE, 1.0).all(|p| p.x <= 0.6 + far);
         assert!(within(3.01 * TOLERANCE.miss));
         assert!(!within(2.99 * TOLERANCE.miss));
     }

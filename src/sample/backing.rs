@@ -32,12 +32,12 @@ const AROUND: usize = 8;
 /// be joined to those inside the domain.
 const CLOUD_REACH: f64 = 1.5;
 
-/// How closely a cloud's surface is looked at.
+/// How closely cuts are looked at, and a cloud's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// By the points that stand for others, each as far as it does.
+    /// Quickly; a cloud by the points that stand for others, each as far as it does.
     Coarse,
-    /// By every point.
+    /// As they will be stored; a cloud by every point.
     Fine,
 }
 

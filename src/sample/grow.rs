@@ -15,7 +15,7 @@ use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care, ClipTolerance, Clips};
-use crate::fit::ellipse::{circumellipse, crossings};
+use crate::fit::ellipse::{circumellipse, crossings, holds};
 use crate::fit::limits::{self, Limited};
 use crate::fit::pose::{Fitting, Pose, Principal, Shapes, above, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
@@ -114,6 +114,10 @@ pub struct Grower<'a> {
     pub round: &'a Round<'a>,
 }
 
+/// Places looked at closely along a clip curve, times those looked at quickly: between these it may lie by
+/// some hundredths of the bound farther off its line.
+const FINER: f64 = 4.0;
+
 /// Clip curves over a quadric.
 pub(super) struct Cut<'a> {
     pub(super) clips: &'a [ClipCurve],
@@ -122,17 +126,37 @@ pub(super) struct Cut<'a> {
 }
 
 impl Cut<'_> {
-    /// Whether they cut along outlines and nowhere else, within `reach` of these in space.
-    pub(super) fn follows(&self, outlines: &[Outline], tolerance: &ClipTolerance, reach: f64) -> bool {
+    /// Whether they cut along outlines and nowhere else, and at every corner of these.
+    ///
+    /// What is looked at closely keeps the tolerance for edges, in space.
+    pub(super) fn follows(&self, outlines: &[Outline], tolerance: &ClipTolerance, look: Look) -> bool {
+        let (reach, finer) = match look {
+            Look::Coarse => (tolerance.reach(), 1.0),
+            Look::Fine => (tolerance.edge, FINER),
+        };
         let conics: Vec<Conic> = self.clips.iter().map(|clip| clip.conic(self.radii)).collect();
         let cuts = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
         let followed = |line: &Outline| clip::follows(&line.points, line.closed, self.radii, cuts, tolerance);
         let last = vec![Cell::new(0); outlines.len()];
+        let lifted = |uv: DVec2| uv.extend((self.curvature * uv * uv).element_sum());
+        let mut border = Vec::new();
         let along = |uv: DVec2| {
-            let place = uv.extend((self.curvature * uv * uv).element_sum());
+            let place = lifted(uv);
+            border.push(place);
             outlines.iter().zip(&last).any(|(line, last)| line.near(place, reach, last))
         };
-        outlines.iter().all(followed) && clip::bounds_only(along, &conics, self.radii, tolerance)
+        outlines.iter().all(followed)
+            && clip::border(&conics, self.radii, tolerance, finer).all(along)
+            && (look == Look::Coarse || self.reaches_corners(outlines, reach, &border))
+    }
+
+    /// Whether every corner of outlines that lies well inside the ellipse has a place of a border within
+    /// `reach`: where the quadric slopes, one that is near enough in the plane may not be.
+    fn reaches_corners(&self, outlines: &[Outline], reach: f64, border: &[DVec3]) -> bool {
+        let inner = self.radii - reach;
+        let inside = |corner: &DVec3| inner.min_element() > 0.0 && holds(corner.truncate(), inner);
+        let near = |corner: DVec3| border.iter().any(|place| place.distance(corner) <= reach);
+        outlines.iter().flat_map(Outline::corners).filter(inside).all(near)
     }
 }
 
@@ -387,12 +411,12 @@ impl Grower<'_> {
             }
         }
         let tolerance = &self.budget.clip;
-        let reach = match care {
-            Care::Feasible => tolerance.reach(),
-            Care::Nearest => tolerance.edge,
+        let look = match care {
+            Care::Feasible => Look::Coarse,
+            Care::Nearest => Look::Fine,
         };
         let cut = Cut { clips: &clips, radii: outer, curvature };
-        if cut.follows(&outlines, tolerance, reach) { Ok(clips) } else { Err(Stop::Stray) }
+        if cut.follows(&outlines, tolerance, look) { Ok(clips) } else { Err(Stop::Stray) }
     }
 
     /// Of the curves that [`Self::clips`] gives, those along which the surface ends, if it is

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use super::region::Region;
 use crate::analyse::surface::{NONE, Surface};
 use crate::fit::ellipse::crossings;
+use crate::fit::offset::{CORNER_SINE, is_corner};
 use crate::fit::pose::Pose;
 use crate::model::polyline::nearest_on;
 
@@ -42,6 +43,18 @@ impl Outline {
         let found = (0..sides).map(|n| around(n) % sides).find(is_near);
         last.set(found.unwrap_or(last.get()));
         found.is_some()
+    }
+
+    /// Where it turns sharply to either side, in splat coordinates.
+    pub fn corners(&self) -> impl Iterator<Item = DVec3> {
+        let count = self.points.len();
+        let inner = if self.closed { 0..count } else { 1..count - 1 };
+        let turns = move |&n: &usize| {
+            let [before, at, after] = [n + count - 1, n, n + 1].map(|n| self.points[n % count]);
+            let [before, after] = [at - before, after - at].map(DVec2::normalize_or_zero);
+            is_corner(before, after, CORNER_SINE) || is_corner(after, before, CORNER_SINE)
+        };
+        inner.filter(turns).map(|n| self.points[n].extend(self.heights[n]))
     }
 }
 

@@ -72,7 +72,7 @@ impl Trial for Cuts<'_> {
         let cut = Cut { clips, radii: splat.radii, curvature: splat.curvature };
         !covered.iter().any(cuts)
             && strayed.iter().all(cuts)
-            && cut.follows(outlines, tolerance, tolerance.edge)
+            && cut.follows(outlines, tolerance, Look::Fine)
             && backing.holds(clips)
     }
 }
