@@ -15,10 +15,6 @@ const RAGGED: f64 = 0.34;
 /// triangles does, parts the surface however few its edges are.
 const SHORTEST: usize = 4;
 
-/// Cosine of the angle between two faces, 90 degrees, beyond which no splat goes over the edge between them:
-/// where they are long beside the mesh's noise, as any are that fold so far, it ends a surface.
-pub const FOLDED: f64 = 0.0;
-
 /// Rounds of dropping chains; each may join others or leave them with a loose end.
 const ROUNDS: usize = 8;
 
@@ -32,23 +28,21 @@ pub struct Chain {
     loose: bool,
 }
 
-/// Unmarks chains that zigzag, and short ones that lead nowhere unless they are folded.
-pub fn drop_ragged(positions: &[Vec3], edges: &Edges, folded: &[bool], marked: &mut [bool]) {
+/// Unmarks chains that zigzag, and short ones that lead nowhere, but for those of their edges that are
+/// `long`: each is a line by itself.
+pub fn drop_ragged(positions: &[Vec3], edges: &Edges, long: &[bool], marked: &mut [bool]) {
     for _ in 0..ROUNDS {
-        let bad: Vec<Chain> = chains(positions.len(), edges, marked)
-            .into_iter()
-            .filter(|chain| {
-                let folds = chain.edges.iter().filter(|&&edge| folded[edge as usize]).count();
-                let lost = chain.edges.len() < SHORTEST && (chain.loose || chain.vertices.first() == chain.vertices.last());
-                2 * folds <= chain.edges.len() && (lost || is_ragged(positions, chain))
-            })
-            .collect();
-        if bad.is_empty() {
+        let is_bad = |chain: &Chain| {
+            let closed = chain.vertices.first() == chain.vertices.last();
+            (chain.edges.len() < SHORTEST && (chain.loose || closed)) || is_ragged(positions, chain)
+        };
+        let bad = chains(positions.len(), edges, marked).into_iter().filter(is_bad);
+        let dropped: Vec<u32> =
+            bad.flat_map(|chain| chain.edges).filter(|&edge| !long[edge as usize]).collect();
+        if dropped.is_empty() {
             break;
         }
-        for edge in bad.iter().flat_map(|chain| &chain.edges) {
-            marked[*edge as usize] = false;
-        }
+        dropped.into_iter().for_each(|edge| marked[edge as usize] = false);
     }
 }
 

@@ -21,11 +21,12 @@ pub fn weak_cosine(degrees: f64) -> f64 {
 }
 
 /// Marks the edges whose faces' normals differ by more than an angle in degrees, and those
-/// that carry such a crease on, straight and hardly less sharp.
+/// that carry such a crease on, straight and hardly less sharp. Those at least so `long`, model units, are
+/// lines by themselves, wherever they lead.
 ///
 /// Edges that do not join two agreeing faces are not marked: they end the surface anyway.
 #[must_use]
-pub fn creases(welded: &Welded, edges: &Edges, degrees: f64, shortest: f64) -> Vec<bool> {
+pub fn creases(welded: &Welded, edges: &Edges, degrees: f64, long: f64) -> Vec<bool> {
     let normals = face_normals(&welded.positions, &welded.triangles);
     let cosines: Vec<Option<f64>> =
         edges.edges.par_iter().map(|edge| crease_cosine(edges, edge, &normals)).collect();
@@ -36,12 +37,12 @@ pub fn creases(welded: &Welded, edges: &Edges, degrees: f64, shortest: f64) -> V
     let mut marked: Vec<bool> = sharper(degrees).collect();
     let weak: Vec<bool> = sharper(WEAK_SHARE * degrees).collect();
     carry_on(welded, edges, &weak, &mut marked);
-    let is_line = |(edge, cosine): (&Edge, &Option<f64>)| {
+    let is_long = |edge: &Edge| {
         let [a, b] = welded.places(edge.ends);
-        cosine.is_some_and(|cosine| cosine < chains::FOLDED) && a.distance(b) >= shortest
+        a.distance(b) >= long
     };
-    let folded: Vec<bool> = edges.edges.iter().zip(&cosines).map(is_line).collect();
-    chains::drop_ragged(&welded.positions, edges, &folded, &mut marked);
+    let long: Vec<bool> = edges.edges.iter().map(is_long).collect();
+    chains::drop_ragged(&welded.positions, edges, &long, &mut marked);
     marked
 }
 

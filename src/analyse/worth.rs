@@ -46,6 +46,10 @@ const SHARPER: f64 = 2.0;
 /// of one splat.
 const FOLDED: f64 = 0.26;
 
+/// Where no splat fits beside a crease, it matters if its faces turn from each other by more than this (cosine
+/// of 90°): a splat over it cannot be had at all.
+const BACK: f64 = 0.0;
+
 /// Places along each side of a face that are looked at, less one.
 const LATTICE: u32 = 3;
 
@@ -119,15 +123,15 @@ impl Patches<'_> {
             let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
             patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
         };
-        DEPTHS.iter().map(|share| share * worth.reach).find_map(|depth| {
+        let found = DEPTHS.iter().map(|share| share * worth.reach).find_map(|depth| {
             let beside = [left.face, right.face].map(|face| misfit(depth, false, &[face]));
             let beside = beside[0].max(beside[1]);
             (beside <= worth.max_error).then(|| {
                 let over = misfit(OVER * depth, true, &[left.face, right.face]);
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
-        })
-        .unwrap_or(self.normals[left.face as usize].dot(self.normals[right.face as usize]) < super::chains::FOLDED)
+        });
+        found.unwrap_or(self.normals[left.face as usize].dot(self.normals[right.face as usize]) < BACK)
     }
 
     /// Places within a disc on the faces that the surface joins to some, and the mean of those
