@@ -28,17 +28,26 @@ pub struct Chain {
     loose: bool,
 }
 
-/// Unmarks chains that zigzag, and short ones that lead nowhere, but for those of their edges that are
-/// `long`: each is a line by itself.
-pub fn drop_ragged(positions: &[Vec3], edges: &Edges, long: &[bool], marked: &mut [bool]) {
+/// Unmarks chains that zigzag, and short ones that lead nowhere.
+///
+/// Edges at least so `long` are lines by themselves and stay, and where they make up most of a chain, all
+/// of it stays: the short ones round a corner between them.
+pub fn drop_ragged(positions: &[Vec3], edges: &Edges, long: f64, marked: &mut [bool]) {
+    let length = |edge: u32| {
+        let [a, b] = edges.edges[edge as usize].ends.map(|end| positions[end as usize].as_dvec3());
+        a.distance(b)
+    };
     for _ in 0..ROUNDS {
         let is_bad = |chain: &Chain| {
             let closed = chain.vertices.first() == chain.vertices.last();
-            (chain.edges.len() < SHORTEST && (chain.loose || closed)) || is_ragged(positions, chain)
+            let lengths = || chain.edges.iter().map(|&edge| length(edge));
+            let whole: f64 = lengths().sum();
+            2.0 * lengths().filter(|length| *length >= long).sum::<f64>() < whole
+                && ((chain.edges.len() < SHORTEST && (chain.loose || closed)) || is_ragged(positions, chain))
         };
         let bad = chains(positions.len(), edges, marked).into_iter().filter(is_bad);
         let dropped: Vec<u32> =
-            bad.flat_map(|chain| chain.edges).filter(|&edge| !long[edge as usize]).collect();
+            bad.flat_map(|chain| chain.edges).filter(|&edge| length(edge) < long).collect();
         if dropped.is_empty() {
             break;
         }
@@ -182,7 +191,7 @@ mod tests {
 
     fn kept_of(heights: &[f32], beyond: usize) -> usize {
         let (positions, edges, mut marked) = sheet(heights, beyond);
-        drop_ragged(&positions, &edges, &vec![false; marked.len()], &mut marked);
+        drop_ragged(&positions, &edges, f64::INFINITY, &mut marked);
         marked.iter().filter(|mark| **mark).count()
     }
 

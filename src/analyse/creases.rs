@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::chains;
 use super::edge_paths::{EdgePaths, STRAIGHT};
-use super::edges::{Edge, Edges, crease_cosine, face_normals};
+use super::edges::{Edges, crease_cosine, face_normals};
 use super::weld::Welded;
 
 /// A crease goes on, from where it is sharp enough by itself, along edges at least this
@@ -37,12 +37,7 @@ pub fn creases(welded: &Welded, edges: &Edges, degrees: f64, long: f64) -> Vec<b
     let mut marked: Vec<bool> = sharper(degrees).collect();
     let weak: Vec<bool> = sharper(WEAK_SHARE * degrees).collect();
     carry_on(welded, edges, &weak, &mut marked);
-    let is_long = |edge: &Edge| {
-        let [a, b] = welded.places(edge.ends);
-        a.distance(b) >= long
-    };
-    let long: Vec<bool> = edges.edges.iter().map(is_long).collect();
-    chains::drop_ragged(&welded.positions, edges, &long, &mut marked);
+    chains::drop_ragged(&welded.positions, edges, long, &mut marked);
     marked
 }
 
