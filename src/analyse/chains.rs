@@ -15,6 +15,9 @@ const RAGGED: f64 = 0.34;
 /// triangles does, parts the surface however few its edges are.
 const SHORTEST: usize = 4;
 
+/// A line that turns by less than this (sine) goes straight on: so far the rounding of 32 bits may turn it.
+const LEAST_TURN: f64 = 2e-3;
+
 /// Rounds of dropping chains; each may join others or leave them with a loose end.
 const ROUNDS: usize = 8;
 
@@ -28,26 +31,52 @@ pub struct Chain {
     loose: bool,
 }
 
+impl Chain {
+    /// For each of its edges, how long the straight run is that it belongs to: all of one edge of a mesh that
+    /// was refined since.
+    fn runs(&self, positions: &[Vec3]) -> Vec<f64> {
+        let at = |vertex: u32| positions[vertex as usize].as_dvec3();
+        let sides: Vec<DVec3> = self.vertices.windows(2).map(|pair| at(pair[1]) - at(pair[0])).collect();
+        let is_straight = |a: &DVec3, b: &DVec3| {
+            a.normalize_or_zero().cross(b.normalize_or_zero()).length() < LEAST_TURN && a.dot(*b) > 0.0
+        };
+        let length = |run: &[DVec3]| (run.len(), run.iter().map(|side| side.length()).sum());
+        let runs = sides.chunk_by(is_straight).map(length);
+        runs.flat_map(|(count, length)| std::iter::repeat_n(length, count)).collect()
+    }
+
+    /// Whether most of it lies in straight runs at least so `long`.
+    pub fn is_coarse(&self, positions: &[Vec3], long: f64) -> bool {
+        let lengths = self.vertices.windows(2).map(|pair| {
+            let [a, b] = [pair[0], pair[1]].map(|vertex| positions[vertex as usize].as_dvec3());
+            a.distance(b)
+        });
+        let (mut within, mut whole) = (0.0, 0.0);
+        for (length, run) in lengths.zip(self.runs(positions)) {
+            whole += length;
+            within += if run >= long { length } else { 0.0 };
+        }
+        2.0 * within >= whole
+    }
+}
+
 /// Unmarks chains that zigzag, and short ones that lead nowhere.
 ///
-/// Edges at least so `long` are lines by themselves and stay, and where they make up most of a chain, all
-/// of it stays: the short ones round a corner between them.
+/// Straight runs at least so `long` are lines by themselves and stay, and where they make up most of a
+/// chain, all of it stays: the short edges round a corner between them.
 pub fn drop_ragged(positions: &[Vec3], edges: &Edges, long: f64, marked: &mut [bool]) {
-    let length = |edge: u32| {
-        let [a, b] = edges.edges[edge as usize].ends.map(|end| positions[end as usize].as_dvec3());
-        a.distance(b)
-    };
     for _ in 0..ROUNDS {
         let is_bad = |chain: &Chain| {
             let closed = chain.vertices.first() == chain.vertices.last();
-            let lengths = || chain.edges.iter().map(|&edge| length(edge));
-            let whole: f64 = lengths().sum();
-            2.0 * lengths().filter(|length| *length >= long).sum::<f64>() < whole
-                && ((chain.edges.len() < SHORTEST && (chain.loose || closed)) || is_ragged(positions, chain))
+            let lost = chain.edges.len() < SHORTEST && (chain.loose || closed);
+            (lost || is_ragged(positions, chain)) && !chain.is_coarse(positions, long)
         };
         let bad = chains(positions.len(), edges, marked).into_iter().filter(is_bad);
-        let dropped: Vec<u32> =
-            bad.flat_map(|chain| chain.edges).filter(|&edge| length(edge) < long).collect();
+        let short = |chain: Chain| {
+            let runs = chain.runs(positions);
+            chain.edges.into_iter().zip(runs).filter(|(_, run)| *run < long).map(|(edge, _)| edge)
+        };
+        let dropped: Vec<u32> = bad.flat_map(short).collect();
         if dropped.is_empty() {
             break;
         }
@@ -203,6 +232,20 @@ mod tests {
     fn a_line_of_few_edges_stays_where_it_ends_at_borders() {
         assert_eq!(kept_of(&[0.0; 2], 0), 1, "the ridge of a roof");
         assert_eq!(kept_of(&[0.0; 2], 1), 0, "inside the surface");
+    }
+
+    #[test]
+    fn a_straight_run_is_a_line_by_itself_and_a_chain_of_such_runs_stays_whole() {
+        let kept = |heights: &[f32], long: f64| {
+            let (positions, edges, mut marked) = sheet(heights, 1);
+            drop_ragged(&positions, &edges, long, &mut marked);
+            marked.iter().filter(|mark| **mark).count()
+        };
+        assert_eq!((kept(&[0.0; 4], 3.0), kept(&[0.0; 4], 3.1)), (3, 0), "inside the surface");
+        let bent = [0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
+        assert_eq!(kept(&bent, 3.1), 0, "a zigzag in its middle");
+        assert_eq!(kept(&bent, 3.0), 6, "but for its two straight runs");
+        assert_eq!(kept(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0], 3.0), 8, "these are most of it");
     }
 
     #[test]

@@ -21,8 +21,8 @@ pub fn weak_cosine(degrees: f64) -> f64 {
 }
 
 /// Marks the edges whose faces' normals differ by more than an angle in degrees, and those
-/// that carry such a crease on, straight and hardly less sharp. Those at least so `long`, model units, are
-/// lines by themselves, wherever they lead.
+/// that carry such a crease on, straight and hardly less sharp. Straight runs at least so `long`, model units,
+/// are lines by themselves, wherever they lead.
 ///
 /// Edges that do not join two agreeing faces are not marked: they end the surface anyway.
 #[must_use]

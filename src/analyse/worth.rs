@@ -56,8 +56,10 @@ const LATTICE: u32 = 3;
 /// Edges of a chain that are looked at, evenly spread; more than half of them decide.
 const LOOKED_AT: usize = 12;
 
-/// Unmarks the chains of feature edges that are not worth a cut.
-pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
+/// Unmarks the chains of feature edges that are not worth a cut: those of which most places are not sharp, or
+/// none where straight runs at least so `long`, model units, make up most of a chain. Facets that long meet
+/// at others as sharp, which hide how well a splat would fit.
+pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f64, marked: &mut [bool]) {
     let chains = chains(welded.positions.len(), edges, marked);
     let patches = Patches {
         welded,
@@ -74,7 +76,11 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: 
                 let every = chain.edges.len().div_ceil(LOOKED_AT);
                 let looked_at = chain.edges.iter().skip(every / 2).step_by(every);
                 let sharp = looked_at.clone().filter(|&&edge| patches.is_sharp(edge, worth, visited)).count();
-                2 * sharp <= looked_at.count()
+                if chain.is_coarse(&welded.positions, long) {
+                    sharp == 0
+                } else {
+                    2 * sharp <= looked_at.count()
+                }
             },
         )
         .collect();
@@ -201,7 +207,7 @@ mod tests {
         let mut marked: Vec<bool> = edges.edges.iter().map(|edge| crease(edge.ends)).collect();
         let all = marked.iter().filter(|mark| **mark).count();
         let worth = Worth { reach: 6.0, max_error: 0.2, misfit };
-        drop_needless(&welded, &edges, &worth, &mut marked);
+        drop_needless(&welded, &edges, &worth, f64::INFINITY, &mut marked);
         (marked.iter().filter(|mark| **mark).count(), all)
     }
 
