@@ -353,8 +353,7 @@ mod tests {
     fn a_curve_that_strays_along_its_arm_or_at_its_end_does_not_follow() {
         let (radii, rho) = (DVec2::ONE, 0.995);
         let conic = Conic { p1: DVec2::NEG_X, p2: DVec2::new(0.0, 0.3), p3: DVec2::X, rho };
-        let follows =
-            |along: &dyn Fn(DVec2) -> bool| border(&[conic], radii, &TOLERANCE, 1.0).all(|p| along(p));
+        let follows = |along: &dyn Fn(DVec2) -> bool| border(&[conic], radii, &TOLERANCE, 1.0).all(along);
         assert!(follows(&|_| true));
         assert!(!follows(&|p| !(-0.7..-0.69).contains(&p.x)), "in the middle of an arm");
         assert!(!follows(&|p| p.distance(DVec2::NEG_X) > 1e-6), "where it meets the rim");
