@@ -64,8 +64,8 @@ pub const FLATTER: f64 = 4.0;
 
 /// A straight run of feature edges at least this many times as long as the shortest line is one by itself: so
 /// long beside the bound it is no noise of a scan but a fold between facets of a coarse mesh, whose lines
-/// need be neither smooth nor long. With 1 the file of a fine scan is 8 % larger, with 3 that of a coarse
-/// mesh 16 %; judged as those of scans, coarse meshes took up to 2.4 times as many bytes.
+/// need be neither smooth nor long. With 1 files of fine scans are about a tenth larger, with 3 those of
+/// coarse meshes a sixth; judged as those of scans, coarse meshes take up to twice as many bytes.
 const LONG: f64 = 2.0;
 
 impl Making<'_> {
