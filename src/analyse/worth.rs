@@ -203,6 +203,11 @@ mod tests {
 
     /// Edges kept of those along a prism at some places of its profile, and how many there are.
     fn kept(profile: &[(f32, f32)], creases: &[u32], misfit: &Misfit<'_>) -> (usize, usize) {
+        kept_if(profile, creases, misfit, f64::INFINITY)
+    }
+
+    /// The same where straight runs at least so `long` are those of a coarse mesh.
+    fn kept_if(profile: &[(f32, f32)], creases: &[u32], misfit: &Misfit<'_>, long: f64) -> (usize, usize) {
         let welded = prism(profile);
         let edges = Edges::of(&welded.triangles);
         let across = profile.len() as u32;
@@ -210,7 +215,7 @@ mod tests {
         let mut marked: Vec<bool> = edges.edges.iter().map(|edge| crease(edge.ends)).collect();
         let all = marked.iter().filter(|mark| **mark).count();
         let worth = Worth { reach: 6.0, max_error: 0.2, misfit };
-        drop_needless(&welded, &edges, &worth, f64::INFINITY, &mut marked);
+        drop_needless(&welded, &edges, &worth, long, &mut marked);
         (marked.iter().filter(|mark| **mark).count(), all)
     }
 
@@ -266,5 +271,20 @@ mod tests {
             .map(|angle| (-2.0 * angle.cos(), 2.0 * angle.sin()))
             .collect();
         assert_eq!(kept(&rod, &[4], &plane), (0, LENGTH as usize));
+    }
+    #[test]
+    fn of_a_long_straight_fold_fewer_places_need_be_sharp() {
+        let roof: Vec<(f32, f32)> =
+            (-10..=10_i8).map(|n| (f32::from(n), -0.5 * f32::from(n).abs())).collect();
+        let whole = 0.5 * f64::from(LENGTH);
+        let sharp_up_to = |share: f64, long: f64| {
+            let misfit = |places: &[DVec3], normal: DVec3| {
+                let mean = places.iter().map(|place| place.z).sum::<f64>() / places.len() as f64;
+                if mean < share * whole { plane(places, normal) } else { 0.0 }
+            };
+            kept_if(&roof, &[10], &misfit, long).0
+        };
+        assert_eq!((sharp_up_to(0.4, whole), sharp_up_to(0.4, 1.1 * whole)), (LENGTH as usize, 0));
+        assert_eq!(sharp_up_to(0.2, whole), 0, "too few even so");
     }
 }
