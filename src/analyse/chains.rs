@@ -32,31 +32,34 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// For each of its edges, how long the straight run is that it belongs to: all of one edge of a mesh that
-    /// was refined since.
-    fn runs(&self, positions: &[Vec3]) -> Vec<f64> {
+    /// The way along each of its edges.
+    fn sides(&self, positions: &[Vec3]) -> Vec<DVec3> {
         let at = |vertex: u32| positions[vertex as usize].as_dvec3();
-        let sides: Vec<DVec3> = self.vertices.windows(2).map(|pair| at(pair[1]) - at(pair[0])).collect();
+        self.vertices.windows(2).map(|pair| at(pair[1]) - at(pair[0])).collect()
+    }
+
+    /// Its straight runs: how many edges each has and how long it is. One edge of a mesh that was refined
+    /// since is one run at least.
+    fn runs(&self, positions: &[Vec3]) -> Vec<(usize, f64)> {
         let is_straight = |a: &DVec3, b: &DVec3| {
             a.normalize_or_zero().cross(b.normalize_or_zero()).length() < LEAST_TURN && a.dot(*b) > 0.0
         };
-        let length = |run: &[DVec3]| (run.len(), run.iter().map(|side| side.length()).sum());
-        let runs = sides.chunk_by(is_straight).map(length);
-        runs.flat_map(|(count, length)| std::iter::repeat_n(length, count)).collect()
+        let run = |sides: &[DVec3]| (sides.len(), sides.iter().map(|side| side.length()).sum());
+        self.sides(positions).chunk_by(is_straight).map(run).collect()
     }
 
     /// Whether most of it lies in straight runs at least so `long`.
     pub fn is_coarse(&self, positions: &[Vec3], long: f64) -> bool {
-        let lengths = self.vertices.windows(2).map(|pair| {
-            let [a, b] = [pair[0], pair[1]].map(|vertex| positions[vertex as usize].as_dvec3());
-            a.distance(b)
-        });
-        let (mut within, mut whole) = (0.0, 0.0);
-        for (length, run) in lengths.zip(self.runs(positions)) {
-            whole += length;
-            within += if run >= long { length } else { 0.0 };
-        }
-        2.0 * within >= whole
+        let runs = self.runs(positions);
+        let length = |least: f64| runs.iter().map(|run| run.1).filter(|run| *run >= least).sum::<f64>();
+        2.0 * length(long) >= length(0.0)
+    }
+
+    /// Its edges in straight runs that are not so `long`.
+    fn short(&self, positions: &[Vec3], long: f64) -> Vec<u32> {
+        let runs = self.runs(positions).into_iter();
+        let is_short = runs.flat_map(|(count, length)| std::iter::repeat_n(length < long, count));
+        self.edges.iter().zip(is_short).filter(|(_, short)| *short).map(|(edge, _)| *edge).collect()
     }
 }
 
@@ -72,11 +75,7 @@ pub fn drop_ragged(positions: &[Vec3], edges: &Edges, long: f64, marked: &mut [b
             (lost || is_ragged(positions, chain)) && !chain.is_coarse(positions, long)
         };
         let bad = chains(positions.len(), edges, marked).into_iter().filter(is_bad);
-        let short = |chain: Chain| {
-            let runs = chain.runs(positions);
-            chain.edges.into_iter().zip(runs).filter(|(_, run)| *run < long).map(|(edge, _)| edge)
-        };
-        let dropped: Vec<u32> = bad.flat_map(short).collect();
+        let dropped: Vec<u32> = bad.flat_map(|chain| chain.short(positions, long)).collect();
         if dropped.is_empty() {
             break;
         }
@@ -107,9 +106,7 @@ pub fn drop_short(positions: &[Vec3], edges: &Edges, least: f64, marked: &mut [b
 
 /// Whether the bend changes much at more than half of the vertices.
 fn is_ragged(positions: &[Vec3], chain: &Chain) -> bool {
-    let at = |vertex: u32| positions[vertex as usize].as_dvec3();
-    let sides: Vec<DVec3> =
-        chain.vertices.windows(2).map(|pair| (at(pair[1]) - at(pair[0])).normalize_or_zero()).collect();
+    let sides: Vec<DVec3> = chain.sides(positions).into_iter().map(DVec3::normalize_or_zero).collect();
     let bends: Vec<DVec3> = sides.windows(2).map(|pair| pair[0].cross(pair[1])).collect();
     let ragged = bends.windows(2).filter(|pair| pair[0].distance(pair[1]) > RAGGED).count();
     2 * ragged > bends.len().saturating_sub(1)

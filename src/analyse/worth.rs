@@ -273,6 +273,16 @@ mod tests {
         assert_eq!(kept(&rod, &[4], &plane), (0, LENGTH as usize));
     }
     #[test]
+    fn where_nothing_fits_beside_a_crease_its_angle_decides() {
+        let roof = |slope: f32| -> Vec<(f32, f32)> {
+            (-10..=10_i8).map(|n| (f32::from(n), -slope * f32::from(n).abs())).collect()
+        };
+        let nothing = |_: &[DVec3], _: DVec3| f64::INFINITY;
+        assert_eq!(kept(&roof(1.1), &[10], &nothing).0, LENGTH as usize, "95 degrees");
+        assert_eq!(kept(&roof(0.9), &[10], &nothing).0, 0, "84 degrees");
+    }
+
+    #[test]
     fn of_a_long_straight_fold_fewer_places_need_be_sharp() {
         let roof: Vec<(f32, f32)> =
             (-10..=10_i8).map(|n| (f32::from(n), -0.5 * f32::from(n).abs())).collect();

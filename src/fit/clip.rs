@@ -276,8 +276,8 @@ const PLACES: (f64, f64) = (16.0, 256.0);
 /// thousandth of a step, which is at most a few bounds long.
 const HALVINGS: usize = 10;
 
-/// Places along the border that clip curves give a splat, ends and tips among them, `finer` times as many as
-/// on a quick look: one by one at which no other curve cuts.
+/// Places along the border that clip curves give a splat, where no other curve cuts, `finer` times as many as
+/// on a quick look; ends and tips are among them.
 ///
 /// Each must lie along an outline, or the splat would go on beyond its surface: the other side of
 /// [`follows`]. So must the tip where the border goes over to another curve: at an acute corner it lies

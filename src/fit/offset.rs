@@ -14,6 +14,12 @@ pub fn is_corner(before: DVec2, after: DVec2, sine: f64) -> bool {
     before.perp_dot(after) > sine || (before.dot(after) < 0.0 && before.perp_dot(after) > 0.0)
 }
 
+/// Whether a line turns sharply between two directions, to either side.
+#[must_use]
+pub fn turns_sharply(before: DVec2, after: DVec2) -> bool {
+    is_corner(before, after, CORNER_SINE) || is_corner(after, before, CORNER_SINE)
+}
+
 /// The outline with every side moved to its right by `by`, or by less, corners mitred.
 ///
 /// The more acute a convex corner is, the farther out lies its tip. `beside` says by how much its sides

@@ -15,7 +15,7 @@ use super::settle::Candidate;
 use crate::analyse::surface::{NONE, Surface};
 use crate::fit::clip::Clips;
 use crate::fit::ellipse::{Run, runs};
-use crate::fit::offset::{CORNER_SINE, is_corner};
+use crate::fit::offset::turns_sharply;
 use crate::model::polyline::nearest_on;
 
 /// Splats by what the lines and borders do that run through their ellipses, and places by what meets there.
@@ -145,7 +145,7 @@ fn arms(run: &Run) -> Vec<Vec<DVec2>> {
         arms[last].push(point);
         if let Some(&after) = points.get(n + 1) {
             let [before, after] = [point - points[n - 1], after - point].map(DVec2::normalize_or_zero);
-            if is_corner(before, after, CORNER_SINE) || is_corner(after, before, CORNER_SINE) {
+            if turns_sharply(before, after) {
                 arms.push(vec![point]);
             }
         }

@@ -114,8 +114,8 @@ pub struct Grower<'a> {
     pub round: &'a Round<'a>,
 }
 
-/// Places looked at closely along a clip curve, times those looked at quickly: between these it may lie by
-/// some hundredths of the bound farther off its line.
+/// On a close look this many times as many places are looked at along a clip curve as on a quick one: between
+/// those of a quick one a curve may lie some hundredths of the bound farther off its line.
 const FINER: f64 = 4.0;
 
 /// Clip curves over a quadric.
@@ -431,5 +431,26 @@ impl Grower<'_> {
             }
         }
         Some(clips)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corner_that_a_slope_takes_away_from_the_border_is_not_reached() {
+        let line = [DVec2::new(0.5, -1.0), DVec2::new(0.5, 0.0), DVec2::new(-0.5, 0.0)];
+        let reached = |curvature: f64, off: f64| {
+            let curvature = DVec2::new(curvature, 0.0);
+            let lifted = |uv: DVec2| uv.extend((curvature * uv * uv).element_sum());
+            let points = line.to_vec();
+            let heights = points.iter().map(|point| lifted(*point).z).collect();
+            let outline = Outline { points, heights, closed: false, ends: false };
+            let cut = Cut { clips: &[], radii: DVec2::ONE, curvature };
+            cut.reaches_corners(&[outline], 0.1, &[lifted(line[1] + DVec2::new(off, 0.0))])
+        };
+        assert!(reached(0.0, 0.09) && !reached(0.0, 0.11), "in a plane");
+        assert!(reached(1.0, 0.06) && !reached(1.0, 0.09), "at a slope of one");
     }
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::region::Region;
 use crate::analyse::surface::{NONE, Surface};
 use crate::fit::ellipse::crossings;
-use crate::fit::offset::{CORNER_SINE, is_corner};
+use crate::fit::offset::turns_sharply;
 use crate::fit::pose::Pose;
 use crate::model::polyline::nearest_on;
 
@@ -52,7 +52,7 @@ impl Outline {
         let turns = move |&n: &usize| {
             let [before, at, after] = [n + count - 1, n, n + 1].map(|n| self.points[n % count]);
             let [before, after] = [at - before, after - at].map(DVec2::normalize_or_zero);
-            is_corner(before, after, CORNER_SINE) || is_corner(after, before, CORNER_SINE)
+            turns_sharply(before, after)
         };
         inner.filter(turns).map(|n| self.points[n].extend(self.heights[n]))
     }
@@ -168,4 +168,22 @@ fn one_sided(surface: &Surface, sides: Vec<Side>) -> (Vec<Side>, Vec<Side>) {
     let mut turned: Vec<(u32, u32)> = sides.iter().map(|&(from, to)| (place(to), place(from))).collect();
     turned.sort_unstable();
     sides.into_iter().partition(|&(from, to)| turned.binary_search(&(place(from), place(to))).is_err())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_to_either_side_are_told_from_bends_and_from_ends() {
+        let corners = |places: &[(f64, f64)], closed: bool| {
+            let points: Vec<DVec2> = places.iter().map(|&(u, v)| DVec2::new(u, v)).collect();
+            let heights = (0_u8..).map(f64::from).take(points.len()).collect();
+            let outline = Outline { points, heights, closed, ends: false };
+            outline.corners().map(|corner| corner.z).collect::<Vec<_>>()
+        };
+        let steps = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (3.0, 1.2)];
+        assert_eq!(corners(&steps, false), [1.0, 2.0]);
+        assert_eq!(corners(&steps, true), [0.0, 1.0, 2.0, 4.0]);
+    }
 }
