@@ -27,9 +27,13 @@ pub struct Worth<'a> {
     pub misfit: &'a Misfit<'a>,
 }
 
-/// Depths of the patches looked at on either side, as shares of the reach, the deepest first: the
-/// first that a splat fits decides.
-const DEPTHS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+/// Depths of the patches looked at on either side, as shares of the reach, the deepest first.
+const DEPTHS: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
+
+/// The first of those at which a splat fits decides, and the next: where the surface beside a crease bends nearly
+/// as much as one splat can, as the wall of a hole does, it misses there by as much as one over the crease; at half
+/// the depth it hardly misses, and the other still does by half.
+const DECISIVE: usize = 2;
 
 /// A patch over the crease, as wide as those beside it are deep, has this share of their depth for
 /// its radius: on a smooth surface all three fit about as well. It goes over all other creases too:
@@ -132,7 +136,7 @@ impl Patches<'_> {
             let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
             patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
         };
-        let found = DEPTHS.iter().map(|share| share * worth.reach).find_map(|depth| {
+        let fitted = DEPTHS.iter().map(|share| share * worth.reach).filter_map(|depth| {
             let beside = [left.face, right.face].map(|face| misfit(depth, false, &[face]));
             let beside = beside[0].max(beside[1]);
             (beside <= worth.max_error).then(|| {
@@ -140,6 +144,7 @@ impl Patches<'_> {
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
         });
+        let found = fitted.take(DECISIVE).reduce(|deeper, next| deeper || next);
         found.unwrap_or(self.normals[left.face as usize].dot(self.normals[right.face as usize]) < BACK)
     }
 
@@ -257,6 +262,15 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_is_worth_a_cut_though_the_surface_beside_it_bends_as_much_as_a_splat_can() {
+        let bent = |x: f32| if x > 0.0 { -0.6 * x - 0.06 * x.powi(3) } else { 0.0 };
+        let lip: Vec<(f32, f32)> = (-20..=20_i8).map(|n| 0.25 * f32::from(n)).map(|x| (x, bent(x))).collect();
+        assert_eq!(kept(&lip, &[20], &parabola), (LENGTH as usize, LENGTH as usize));
+        let smooth: Vec<(f32, f32)> = lip.iter().map(|&(x, _)| (x, -0.06 * x.powi(3))).collect();
+        assert_eq!(kept(&smooth, &[20], &parabola), (0, LENGTH as usize), "where it only bends");
+    }
+
+    #[test]
     fn a_ridge_lower_than_the_bound_is_not() {
         let ridge: Vec<(f32, f32)> =
             (-50..=50_i8).map(|n| (0.2 * f32::from(n), if n == 0 { 0.15 } else { 0.0 })).collect();
@@ -272,6 +286,7 @@ mod tests {
             .collect();
         assert_eq!(kept(&rod, &[4], &plane), (0, LENGTH as usize));
     }
+
     #[test]
     fn where_nothing_fits_beside_a_crease_its_angle_decides() {
         let roof = |slope: f32| -> Vec<(f32, f32)> {
