@@ -19,7 +19,7 @@ use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_creases::{Sought, cloud_creases};
-use crate::analyse::cloud_surface::{Lines, cloud_surface};
+use crate::analyse::cloud_surface::{CloudSurface, Lines, OpenPlace, cloud_surface};
 use crate::analyse::mesh_surface::{Features, Found, Making, Marked, cut_lines};
 use crate::analyse::partners::Tally;
 use crate::analyse::surface::Surface;
@@ -109,6 +109,9 @@ pub struct Baked {
     /// Points of a cloud, ascending, that belong to no surface: outliers, for which the bound does not
     /// hold.
     pub left_out: Vec<u32>,
+    /// Borders of a cloud and rims of its holes, those of most points first: there the sampling does not say
+    /// how far the surface goes on, and splats may leave a hole or reach beyond.
+    pub open_places: Vec<OpenPlace>,
     /// Why the colours were left out, if they were.
     pub colors_left_out: Option<&'static str>,
 }
@@ -147,7 +150,8 @@ pub fn bake(
     clock.stage(progress, "analyse");
     let meant = meant(input, options, max_error)?;
     check_noise(&meant, options.denoise, max_error)?;
-    let Analysed { mut surface, marked, features, left_out } = analyse(&meant, options, max_error, diagonal)?;
+    let Analysed { mut surface, marked, features, left_out, open_places } =
+        analyse(&meant, options, max_error, diagonal)?;
     let round = |splat: &Splat| rounding(splat, max_error);
     let growing =
         Growing { budget: Budget::new(max_error, options.clips), shapes: options.shapes, round: &round };
@@ -231,6 +235,7 @@ pub fn bake(
         partners,
         samples,
         left_out,
+        open_places,
         colors_left_out,
     })
 }
@@ -355,6 +360,7 @@ struct Analysed {
     marked: Option<Marked>,
     features: Found,
     left_out: Vec<u32>,
+    open_places: Vec<OpenPlace>,
 }
 
 /// Lines found that are shorter than this many error bounds, taken together with all that they
@@ -383,9 +389,10 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             let given = given_lines(&meant.edges, &cloud.frame);
             let lines = cloud_lines(cloud, &meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
-            let found = cloud_surface(cloud, options.normals.into(), lines, Some(reach))?;
-            let features = Found { feature_edges: found.edges, matched: found.matched };
-            Ok(Analysed { surface: found.surface, marked: None, features, left_out: found.left_out })
+            let CloudSurface { surface, left_out, edges, open_places, matched } =
+                cloud_surface(cloud, options.normals.into(), lines, Some(reach))?;
+            let features = Found { feature_edges: edges, matched };
+            Ok(Analysed { surface, marked: None, features, left_out, open_places })
         }
     }
 }

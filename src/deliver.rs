@@ -8,6 +8,7 @@ use crate::format::{self, quantize::Quantizer};
 use crate::ingest::Input;
 use crate::measure::fit::{REACH, fit, points};
 use crate::measure::sights::Sights;
+use crate::measure::surface::overlap;
 use crate::model::asset::Asset;
 use crate::model::sight::Faults;
 use crate::model::splat::Splat;
@@ -20,6 +21,8 @@ pub struct Delivery {
     pub bytes: Vec<u8>,
     /// The asset as those bytes decode.
     pub asset: Asset,
+    /// Sum of the clipped splats' areas over the area of the mesh; `None` for a cloud.
+    pub overlap: Option<f64>,
     /// Time of each stage.
     pub stages: Vec<StageTime>,
     /// The bake.
@@ -40,14 +43,19 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     let bytes = format::encode(&baked.asset)?;
     let mut asset = format::decode(&bytes, &format::Limits::default())?;
     clock.stage(progress, "measure");
-    measure(model(baked.stand_in.as_ref().unwrap_or(input)), &baked.left_out, &mut asset)?;
+    let meant = baked.stand_in.as_ref().unwrap_or(input);
+    measure(model(meant), &baked.left_out, &mut asset)?;
+    let overlap = match meant {
+        Input::Mesh(mesh) => overlap(&asset, mesh),
+        Input::Cloud(_) => None,
+    };
     clock.stage(progress, "encode");
     // Encoding what was decoded changes nothing but the measured error, which the header rounds.
     let bytes = format::encode(&asset)?;
     let asset = format::decode(&bytes, &format::Limits::default())?;
     let mut stages = baked.stages.clone();
     stages.extend(clock.finish());
-    Ok(Delivery { bytes, asset, stages, baked })
+    Ok(Delivery { bytes, asset, overlap, stages, baked })
 }
 
 /// The rays on which an asset of a mesh shows more or less than that once it is stored; `sights` holds

@@ -13,6 +13,8 @@ use super::given_lines::Matched;
 use super::line_cut::LineCut;
 use super::line_network::Network;
 use super::nearest::{Nearest, Search, spacing};
+pub use super::open_places::OpenPlace;
+use super::open_places::open_places;
 use super::outliers::{Strewn, outliers};
 use super::surface::{NONE, Surface};
 use super::thin::{Reach, Sheet, owners};
@@ -29,6 +31,9 @@ pub struct CloudSurface {
     pub left_out: Vec<u32>,
     /// Segments of the lines, given or found and resampled, at which a sheet of the surface ends.
     pub edges: usize,
+    /// Its borders and the rims of its holes, lines aside: there and nowhere else splats that cover its points
+    /// may leave a hole.
+    pub open_places: Vec<OpenPlace>,
     /// What became of the lines, if any were given; `edges` counts their samples' segments.
     pub matched: Option<Matched>,
 }
@@ -83,7 +88,7 @@ pub fn cloud_surface(
     reach: Option<Reach>,
 ) -> Result<CloudSurface> {
     let laid = Laid::of(cloud, source, lines)?;
-    let left_out = laid.left_out();
+    let (left_out, open_places) = (laid.left_out(), laid.open_places());
     let Laid { points, normals, cut, joined, joins, on_line, outlier, lost, .. } = laid;
     let sheet = Sheet {
         positions: &points.positions,
@@ -99,7 +104,7 @@ pub fn cloud_surface(
         Lines::Given(lines) if !lines.is_empty() => Some(matched(lines, edges, length, lost)),
         Lines::Given(_) | Lines::Found(_) => None,
     };
-    Ok(CloudSurface { surface, left_out, edges, matched })
+    Ok(CloudSurface { surface, left_out, edges, open_places, matched })
 }
 
 /// The surface of a cloud as its points tell it by themselves: what splats that cover it have to fill, and
@@ -158,6 +163,13 @@ impl Laid {
         let place = &self.points.place;
         let is_outlier = |v: &u32| self.outlier[place[*v as usize] as usize];
         (0..place.len() as u32).filter(is_outlier).collect()
+    }
+
+    /// Where the cloud is open, but for what a line ends.
+    fn open_places(&self) -> Vec<OpenPlace> {
+        let mut counts: Vec<bool> = self.outlier.iter().map(|outlier| !outlier).collect();
+        self.ends.iter().for_each(|&(point, _)| counts[point as usize] = false);
+        open_places(&self.points.positions, &self.joined, |n| counts[n])
     }
 
     /// The discs of the cloud's points but for outliers, in its order.

@@ -25,6 +25,7 @@ pub mod line_sheets;
 pub mod marks;
 pub mod mesh_surface;
 pub mod nearest;
+mod open_places;
 pub mod orient;
 pub mod outliers;
 pub mod partners;

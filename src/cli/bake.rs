@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use qsplat::analyse::cloud_surface::OpenPlace;
 use qsplat::analyse::mesh_surface::Found;
 use qsplat::bake::meant::Quiet;
 use qsplat::bake::{
@@ -11,6 +12,7 @@ use qsplat::bake::{
 };
 use qsplat::error::Result;
 use qsplat::ingest::Input;
+use qsplat::model::frame::Frame;
 use qsplat::report::{self, Report};
 use qsplat::tolerance::DEFAULT_EDGE_ANGLE;
 use qsplat::{deliver, format};
@@ -194,6 +196,7 @@ impl Arguments {
             input: self.facts(&input, &options, &delivery.baked),
             options: self.stated(),
             choice: choice(&delivery.baked),
+            overlap: delivery.overlap,
             run: report::Run::of_stages(stages, rayon::current_num_threads()),
         };
         let info = format::inspect(&delivery.bytes, &format::Limits::default())?;
@@ -283,6 +286,8 @@ impl Arguments {
             dropped_points: cloud.dropped as u64,
             dropped_triangles: dropped_triangles as u64,
             outliers: baked.left_out.len() as u64,
+            open_places: open_places(&baked.open_places, &cloud.frame),
+            open_place_count: baked.open_places.len() as u64,
             smooth: matches!(baked.made, Made::Smooth(_)),
             noise: baked.noise.map(share),
             moved: match baked.made {
@@ -331,6 +336,16 @@ impl Arguments {
 
 /// By how much a share of the diagonal may change on its way to the model's units and back.
 const ROUNDED: f64 = 1e-6;
+
+/// The longest open places of a cloud in input units.
+fn open_places(found: &[OpenPlace], frame: &Frame) -> Vec<report::OpenPlace> {
+    let stated = |place: &OpenPlace| report::OpenPlace {
+        points: place.points as u64,
+        middle: frame.to_input(place.middle).into(),
+        reach: place.reach * frame.scale(),
+    };
+    found.iter().take(report::MOST_OPEN_PLACES).map(stated).collect()
+}
 
 fn outliers_note(input: &report::Input) -> String {
     let report::Input { outliers, points, .. } = input;

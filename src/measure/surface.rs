@@ -20,6 +20,7 @@ use super::samples::{self, MOST};
 use super::spread::{self, Sample};
 use crate::error::{Error, Result};
 use crate::model::asset::Asset;
+use crate::model::mesh::Mesh;
 use crate::tolerance::DEFAULT_EDGE_ANGLE;
 
 /// How far the splats' surfaces and the input's lie from each other. Distances in model units.
@@ -74,6 +75,13 @@ pub fn surface(asset: &Asset, input: &InputSurface<'_>) -> Result<SurfaceErrors>
             SurfaceErrors { forward, backward, normal, overlap: None }
         }
     })
+}
+
+/// Sum of the clipped splats' areas over a mesh's area, as in [`SurfaceErrors`]; `None` if it has none.
+#[must_use]
+pub fn overlap(asset: &Asset, mesh: &Mesh) -> Option<f64> {
+    let area: f64 = samples::areas(mesh).iter().sum();
+    (area > 0.0).then(|| Patches::new(asset).area() / area)
 }
 
 /// Distances and angles of the probes, and the worst of them with their distances.

@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::model::asset::{Asset, Counts};
 pub use optional::Optional;
 pub use schema::{
-    Absent, Accuracy, Choice, Chunk, Density, EdgeCases, Field, File, Fit, Input, LowerBound, Meeting, Model,
-    Moved, Options, Run,
+    Absent, Accuracy, Choice, Chunk, Density, EdgeCases, Field, File, Fit, Input, LowerBound,
+    MOST_OPEN_PLACES, Meeting, Model, Moved, OpenPlace, Options, Run,
 };
 
 /// Name and version of the schema. The number grows when a key changes its meaning or goes;
@@ -63,6 +63,8 @@ pub struct Origin {
     pub options: Options,
     /// How the splats were chosen.
     pub choice: Choice,
+    /// Sum of the clipped splats' areas over the area of the mesh, if it is one.
+    pub overlap: Option<f64>,
     /// Time, memory and threads.
     pub run: Run,
 }
@@ -77,9 +79,10 @@ impl Report {
         let density = Density {
             bytes_per_splat: per(counts.splats as u64),
             bytes_per_point: origin.as_ref().map(|origin| per(origin.input.points)),
+            overlap: origin.as_ref().and_then(|origin| origin.overlap),
         };
         let (input, options, choice, run) = match origin {
-            Some(Origin { input, options, choice, run }) => {
+            Some(Origin { input, options, choice, run, .. }) => {
                 (Some(input), Some(options), Some(choice), Some(run))
             }
             None => (None, None, None, None),

@@ -29,6 +29,13 @@ pub struct Input {
     /// Points of a cloud that belong to no surface and were left out: the bound does not hold for them.
     #[serde(default)]
     pub outliers: u64,
+    /// Borders of a cloud and rims of its holes wider than the sampling leaves elsewhere, those of most points
+    /// first, at most [`MOST_OPEN_PLACES`]: there it is open how far the surface goes on.
+    #[serde(default)]
+    pub open_places: Vec<OpenPlace>,
+    /// How many there are in all.
+    #[serde(default)]
+    pub open_place_count: u64,
     /// Whether a mesh's facets were taken for a smooth surface: the errors are then those against it.
     pub smooth: bool,
     /// Standard deviation of a cloud's points from their surface, a fraction of the diagonal; `None`
@@ -62,6 +69,20 @@ pub struct Input {
     /// from the cloud, and were left out.
     #[serde(default)]
     pub lines_lost: Vec<u64>,
+}
+
+/// No more open places than these are listed.
+pub const MOST_OPEN_PLACES: usize = 64;
+
+/// A border of a cloud, or the rim of a hole.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OpenPlace {
+    /// Points along it.
+    pub points: u64,
+    /// The middle of the box around these, input units.
+    pub middle: [f64; 3],
+    /// Half the diagonal of that box, input units.
+    pub reach: f64,
 }
 
 /// How far points were moved, fractions of the diagonal.
@@ -239,6 +260,9 @@ pub struct Density {
     pub bytes_per_splat: f64,
     /// Bytes of the file for each input point.
     pub bytes_per_point: Option<f64>,
+    /// Sum of the clipped splats' areas over the area of the mesh that was baked; `None` for a cloud.
+    #[serde(default)]
+    pub overlap: Option<f64>,
 }
 
 /// The error bound and what was achieved, as fractions of the bounding box's diagonal.

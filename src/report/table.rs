@@ -38,6 +38,17 @@ impl Report {
                     format!("{} that belong to no surface were left out", points(input.outliers)),
                 );
             }
+            if let Some(largest) = input.open_places.first() {
+                let [x, y, z] = largest.middle;
+                let places = match input.open_place_count {
+                    1 => "1 border or rim of a hole".into(),
+                    count => format!("{count} borders and rims of holes, the longest"),
+                };
+                text.row(
+                    "open",
+                    format!("{places} around ({x:.6}, {y:.6}, {z:.6}), {} there", points(largest.points)),
+                );
+            }
             if input.smooth {
                 text.row("surface", "smooth, through the vertices: errors are those against it");
             }
@@ -52,6 +63,9 @@ impl Report {
         let per_point = self.density.bytes_per_point.map_or(String::new(), |n| format!(", {n:.2} a point"));
         text.row("bytes", format!("{} ({:.1} a splat{per_point})", file.bytes, self.density.bytes_per_splat));
         text.row("splats", format!("{} ({}, {} clipped)", counts.splats, counts.kinds(), counts.clipped));
+        if let Some(overlap) = self.density.overlap {
+            text.row("overlap", format!("{overlap:.2} of the input's area"));
+        }
         text.row(
             "clip curves",
             format!("{} curved, {} straight", counts.curved_clips, counts.straight_clips),

@@ -55,6 +55,8 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         dropped_points: 1,
         dropped_triangles: 2,
         outliers: 3,
+        open_places: vec![OpenPlace { points: 30, middle: [1.0, 2.0, 3.0], reach: 0.5 }],
+        open_place_count: 2,
         smooth: false,
         noise: Some(1e-5),
         moved: Some(Moved { rms: 1e-5, max: 5e-5 }),
@@ -111,7 +113,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         edge_cases,
         lower_bound,
     };
-    Origin { input, options, choice, run }
+    Origin { input, options, choice, overlap: Some(1.25), run }
 }
 
 fn full() -> Report {
@@ -136,7 +138,9 @@ fn what_a_file_cannot_know_is_null() {
     for key in ["input", "options", "choice", "run"] {
         assert!(value[key].is_null(), "{key}");
     }
-    assert!(value["density"]["bytes_per_point"].is_null());
+    for key in ["bytes_per_point", "overlap"] {
+        assert!(value["density"][key].is_null(), "{key}");
+    }
 }
 
 #[test]
@@ -190,6 +194,8 @@ fn the_table_names_what_matters() {
         "sample",
         "kept",
         "outliers      3 points that belong to no surface were left out",
+        "open          2 borders and rims of holes, the longest around (1.000000, 2.000000, 3.000000), 30 points there",
+        "overlap       1.25 of the input's area",
     ] {
         assert!(table.contains(part), "{part} is missing in\n{table}");
     }

@@ -1,6 +1,7 @@
 //! Spheres, tori, sheets and holes.
 
 use glam::{DVec3, Vec3};
+use qsplat::analyse::cloud_surface::OpenPlace;
 use qsplat::bake::Silent;
 use qsplat::bake::{MaxError, Normals, kept, meant};
 use qsplat::deliver::{self, deliver};
@@ -29,6 +30,7 @@ fn a_sphere_without_normals_comes_out_whole_and_outside_out() {
     }
     assert!(made.asset.splats.len() < 60, "{}", made.asset.splats.len());
     assert_eq!(made.baked.choice.last_resorts, 0);
+    assert!(made.baked.open_places.is_empty(), "{:?}", made.baked.open_places);
 }
 
 #[test]
@@ -125,6 +127,12 @@ fn holes_and_borders_stay_where_they_are() {
         // Round a hole the cells reach into it: up to what is no hole yet.
         assert!(nearest < room + spacing, "{p} lies {nearest} from the cloud");
     }
+    let [border, hole] = made.baked.open_places.as_slice() else { panic!("{:?}", made.baked.open_places) };
+    let reach = |place: &OpenPlace| place.reach * cloud.frame.scale();
+    assert_eq!(border.points, 4 * 49);
+    assert!((reach(border) - 0.98 * std::f64::consts::SQRT_2).abs() < 1e-6, "{border:?}");
+    assert!(cloud.frame.to_input(hole.middle).distance(middle) < spacing, "{hole:?}");
+    assert!((0.3..0.5).contains(&reach(hole)), "{hole:?}");
     assert!(made.asset.splats.len() < 400, "{}", made.asset.splats.len());
     println!("a plane with a hole: {} splats of {} points", made.asset.splats.len(), places.len());
 }
