@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::constants::{COSINE_FLOOR, RIM_WEIGHT};
+use super::constants::{COSINE_FLOOR, RIM_WEIGHT, SINE_FLOOR, YIELD_BEHIND};
 
 /// Weight of a hit by its squared distance from the centre in units of the ellipse: 1 at the
 /// centre, falling smoothly to [`RIM_WEIGHT`] at the rim.
@@ -25,11 +25,19 @@ pub fn depth_band(band: f64, normal: DVec3, direction: DVec3) -> f64 {
     band / along.max(COSINE_FLOOR * direction.length())
 }
 
-/// By which share of all that it may, a place so far from the nearest clip curve gives way: 1 on the curve,
-/// 0 from `reach` on.
+/// How much deeper what lies across a line may be seen instead of a place on its curve: `width` along the
+/// surface, from the curve inwards, as deep as the ray goes on that way.
 #[must_use]
-pub fn yield_share(distance: f64, reach: f64) -> f64 {
-    (1.0 - distance / reach).max(0.0)
+pub fn depth_yielded(width: f64, normal: DVec3, direction: DVec3) -> f64 {
+    let aside = direction.reject_from_normalized(normal).length();
+    width / aside.max(SINE_FLOOR * direction.length())
+}
+
+/// By which share of all that it may, a place so far from the nearest clip curve gives way: 1 on the curve,
+/// 0 from `reach` on. `behind` tells whether it is seen from behind.
+#[must_use]
+pub fn yield_share(distance: f64, reach: f64, behind: bool) -> f64 {
+    if behind { f64::from(distance < YIELD_BEHIND * reach) } else { (1.0 - distance / reach).max(0.0) }
 }
 
 /// A normal turned towards the eye.

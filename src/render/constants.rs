@@ -25,6 +25,15 @@ pub const YIELD_ERRORS: f64 = 1.0;
 /// apart there.
 pub const YIELD_SHARE: f64 = 0.5;
 
+/// What is seen from behind gives way this many times as far from its curves, and all that it may: a ray that
+/// comes out there went in across the line, at what is to be seen.
+pub const YIELD_BEHIND: f64 = 2.0;
+
+/// Least sine between ray and normal by which that is divided: the steeper a ray, the deeper below a place
+/// beyond the line lies what it meets across the line, on a wall that it hardly sees. Below, at 12 degrees
+/// from the wall, that shows in little but a line.
+pub const SINE_FLOOR: f64 = 0.2;
+
 /// Least cosine between ray and normal by which the band is divided.
 ///
 /// Near a silhouette the band along the ray would grow without bound and reach another
@@ -108,9 +117,11 @@ pub fn agree_cosine() -> f64 {
 pub fn wgsl() -> String {
     let scalars = [
         ("COSINE_FLOOR", COSINE_FLOOR),
+        ("SINE_FLOOR", SINE_FLOOR),
         ("AGREE_COSINE", agree_cosine()),
         ("RIM_WEIGHT", RIM_WEIGHT),
         ("YIELD_SHARE", YIELD_SHARE),
+        ("YIELD_BEHIND", YIELD_BEHIND),
         ("BOUND_PAD", BOUND_PAD),
         ("NORMAL_TIE", NORMAL_TIE),
         ("DEPTH_GREY_NEAR", DEPTH_GREY[0]),

@@ -163,12 +163,13 @@ impl Scene for Caps<'_> {
             let [first, second] = intersect::quadric_roots(cap.curvature, &local, cap.reach);
             hit(first).or_else(|| hit(second))
         }?;
-        let share = composite::yield_share(cap.clearance(found.at), self.yielding);
+        let normal = self.look(item, found.at).normal;
+        let behind = normal.dot(ray.direction()) > 0.0;
+        let share = composite::yield_share(cap.clearance(found.at), self.yielding, behind);
         if share == 0.0 {
             return Some(found);
         }
-        let normal = self.look(item, found.at).normal;
-        let gives_way = share * composite::depth_band(self.gives_way, normal, ray.direction());
+        let gives_way = share * composite::depth_yielded(self.gives_way, normal, ray.direction());
         Some(Hit { gives_way, ..found })
     }
 

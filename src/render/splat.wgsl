@@ -122,20 +122,20 @@ fn hit(cap: Cap, ray: Ray) -> Hit {
 //#end
 }
 
-// The unit normal at a hit, turned towards the eye.
-fn normal_at(cap: Cap, uv: vec2<f32>, direction: vec3<f32>) -> vec3<f32> {
+// The unit normal at a hit.
+fn normal_at(cap: Cap, uv: vec2<f32>) -> vec3<f32> {
 //#if QUADRIC
     let slope = -2.0 * cap.shape.zw * uv;
-    return face(normalize(cap.i * slope.x + cap.j * slope.y + cap.k), direction);
+    return normalize(cap.i * slope.x + cap.j * slope.y + cap.k);
 //#else
-    return face(cap.k, direction);
+    return cap.k;
 //#end
 }
 
 // By which share of all that it may, a hit gives way to what lies deeper.
-fn gives_way(cap: Cap, hit: Hit) -> f32 {
+fn gives_way(cap: Cap, hit: Hit, behind: bool) -> f32 {
 //#if CLIPPED
-    return yield_share(clearance(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy));
+    return yield_share(clearance(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy), behind);
 //#else
     return 0.0;
 //#end
@@ -158,9 +158,10 @@ fn visibility(cap: Cap) -> Visible {
         discard;
     }
     let direction = vec3<f32>(ray.slope, 1.0);
-    let normal = normal_at(cap, hit.uv, direction);
-    let share = gives_way(cap, hit);
-    let order = hit.depth + share * YIELD_SHARE * depth_band(normal, direction);
+    let outward = normal_at(cap, hit.uv);
+    let share = gives_way(cap, hit, dot(outward, direction) > 0.0);
+    let normal = face(outward, direction);
+    let order = hit.depth + share * depth_yielded(normal, direction);
     let along = (order - eye.depth_range.x) / (eye.depth_range.y - eye.depth_range.x);
     let surface = vec4<f32>((1.0 + share) * normal, hit.depth);
     return Visible(along, surface, cap.words.x + 1u);
@@ -198,9 +199,11 @@ fn part(cap: Cap) -> Part {
     if !hit.found || hit.depth > surface.w + band {
         return Part(false, 0.0, vec3<f32>(0.0));
     }
-    let normal = normal_at(cap, hit.uv, direction);
+    let outward = normal_at(cap, hit.uv);
+    let normal = face(outward, direction);
     // What gives way by more is of the other side of an edge, or of this one and no better.
-    if gives_way(cap, hit) * depth_band(normal, direction) > (share + SHARE_ROUNDING) * band {
+    let yielded = (share + SHARE_ROUNDING) * depth_yielded(visible, direction);
+    if gives_way(cap, hit, dot(outward, direction) > 0.0) * depth_yielded(normal, direction) > yielded {
         return Part(false, 0.0, vec3<f32>(0.0));
     }
     return Part(dot(normal, visible) >= AGREE_COSINE, hit.ellipse, normal);

@@ -175,6 +175,6 @@ impl EyeRecord {
 /// gives way takes.
 pub fn reach(asset: &Asset) -> f64 {
     let reach = |splat: &Splat| splat.center.length() + splat.bounding_radius();
-    let gives_way = constants::YIELD_SHARE * constants::band(asset) / constants::COSINE_FLOOR;
+    let gives_way = constants::YIELD_SHARE * constants::band(asset) / constants::SINE_FLOOR;
     asset.splats.iter().map(reach).fold(0.5 * asset.diagonal, f64::max) + gives_way
 }
