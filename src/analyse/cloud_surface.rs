@@ -31,8 +31,7 @@ pub struct CloudSurface {
     pub left_out: Vec<u32>,
     /// Segments of the lines, given or found and resampled, at which a sheet of the surface ends.
     pub edges: usize,
-    /// Its borders and the rims of its holes, lines aside: there and nowhere else splats that cover its points
-    /// may leave a hole.
+    /// Its borders and the rims of its holes, lines aside: there splats that cover its points may leave a hole.
     pub open_places: Vec<OpenPlace>,
     /// What became of the lines, if any were given; `edges` counts their samples' segments.
     pub matched: Option<Matched>,

@@ -1,7 +1,7 @@
 //! Where a cloud leaves it open how far its surface goes on: at its borders and around holes.
 //!
-//! Everywhere else margins fill the surface, and splats that cover them have no hole. Whoever bakes a scan
-//! wants to know where that condition does not hold, and how wide.
+//! Elsewhere margins fill the surface, but for the few empty discs that chance leaves among points strewn at
+//! random, and splats that cover these have no hole. Whoever bakes a scan wants to know where that does not hold.
 
 use std::cmp::Reverse;
 

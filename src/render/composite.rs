@@ -25,19 +25,18 @@ pub fn depth_band(band: f64, normal: DVec3, direction: DVec3) -> f64 {
     band / along.max(COSINE_FLOOR * direction.length())
 }
 
-/// How much deeper what lies across a line may be seen instead of a place on its curve: `width` along the
-/// surface, from the curve inwards, as deep as the ray goes on that way.
+/// How much deeper what lies across a line may be seen instead of a place so far, in `reach`, from its curve:
+/// on the curve `width` along the surface, as deep as the ray goes on that way, from one reach on nothing.
+///
+/// What is seen from behind gives way by all that anything may.
 #[must_use]
-pub fn depth_yielded(width: f64, normal: DVec3, direction: DVec3) -> f64 {
+pub fn depth_yielded(distance: f64, width: f64, normal: DVec3, direction: DVec3) -> f64 {
+    let least = SINE_FLOOR * direction.length();
+    if normal.dot(direction) > 0.0 {
+        return f64::from(distance < YIELD_BEHIND) * width / least;
+    }
     let aside = direction.reject_from_normalized(normal).length();
-    width / aside.max(SINE_FLOOR * direction.length())
-}
-
-/// By which share of all that it may, a place so far from the nearest clip curve gives way: 1 on the curve,
-/// 0 from `reach` on. `behind` tells whether it is seen from behind.
-#[must_use]
-pub fn yield_share(distance: f64, reach: f64, behind: bool) -> f64 {
-    if behind { f64::from(distance < YIELD_BEHIND * reach) } else { (1.0 - distance / reach).max(0.0) }
+    (1.0 - distance).max(0.0) * width / aside.max(least)
 }
 
 /// A normal turned towards the eye.
@@ -81,5 +80,24 @@ impl Blend {
     #[must_use]
     pub fn mean(&self) -> (DVec3, Vec3) {
         (self.normal.normalize_or_zero(), self.color / self.weight.max(f64::MIN_POSITIVE) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_steep_ray_sees_deeper_across_a_line_and_none_sees_the_other_side_from_behind() {
+        let yielded = |distance: f64, lean: f64, up: f64| {
+            depth_yielded(distance, 1.0, up * DVec3::NEG_Z, DVec3::new(lean, 0.0, 1.0))
+        };
+        assert!((yielded(0.0, 1.0, 1.0) - 1.0).abs() < 1e-12, "at 45 degrees as deep as wide");
+        assert!((yielded(0.0, 0.5, 1.0) - 2.0).abs() < 1e-12, "twice as deep at half the slope");
+        assert!((yielded(0.5, 0.5, 1.0) - 1.0).abs() < 1e-12, "half as deep half a reach from the curve");
+        assert_eq!((yielded(1.1, 0.5, 1.0), yielded(2.1, 0.5, -1.0)), (0.0, 0.0), "nothing farther off");
+        let most = yielded(0.0, 0.0, 1.0);
+        assert!((most - 1.0 / SINE_FLOOR).abs() < 1e-12, "but not without end");
+        assert!(yielded(1.1, 0.0, -1.0) >= most, "from behind it is the most");
     }
 }

@@ -11,16 +11,15 @@ fn depth_band(normal: vec3<f32>, direction: vec3<f32>) -> f32 {
     return eye.band / max(abs(dot(normal, direction)), COSINE_FLOOR * length(direction));
 }
 
-// How much deeper what lies across a line may be seen instead of a place on its curve.
-fn depth_yielded(normal: vec3<f32>, direction: vec3<f32>) -> f32 {
-    let aside = length(direction - dot(direction, normal) * normal);
-    return YIELD_SHARE * eye.band / max(aside, SINE_FLOOR * length(direction));
-}
-
-// By which share of all that it may, a place so far from the nearest clip curve gives way.
-fn yield_share(distance: f32, behind: bool) -> f32 {
-    let from_behind = select(0.0, 1.0, distance < YIELD_BEHIND * eye.yielding);
-    return select(max(1.0 - distance / eye.yielding, 0.0), from_behind, behind);
+// How much deeper what lies across a line may be seen instead of a place so far from its curve: in the widths
+// that `depth_yielded` of `composite.rs` is given.
+fn yielded(distance: f32, outward: vec3<f32>, direction: vec3<f32>) -> f32 {
+    let least = SINE_FLOOR * length(direction);
+    let along = dot(outward, direction);
+    let aside = length(direction - along * outward);
+    let from_behind = select(0.0, 1.0, distance < YIELD_BEHIND * eye.yielding) / least;
+    let from_above = max(1.0 - distance / eye.yielding, 0.0) / max(aside, least);
+    return select(from_above, from_behind, along > 0.0);
 }
 
 // A normal turned towards the eye.

@@ -25,13 +25,13 @@ pub const YIELD_ERRORS: f64 = 1.0;
 /// apart there.
 pub const YIELD_SHARE: f64 = 0.5;
 
-/// What is seen from behind gives way this many times as far from its curves, and all that it may: a ray that
-/// comes out there went in across the line, at what is to be seen.
+/// What is seen from behind gives way this many times as far from its curves, by all that anything may: a ray
+/// that comes out there went in across the line, at what is to be seen.
 pub const YIELD_BEHIND: f64 = 2.0;
 
-/// Least sine between ray and normal by which that is divided: the steeper a ray, the deeper below a place
-/// beyond the line lies what it meets across the line, on a wall that it hardly sees. Below, at 12 degrees
-/// from the wall, that shows in little but a line.
+/// Least sine between ray and normal by which that is divided. The steeper a ray, the deeper below a place
+/// beyond the line it meets what lies across, a wall that it runs along; at less than 12 degrees from such a
+/// wall little of that is seen.
 pub const SINE_FLOOR: f64 = 0.2;
 
 /// Least cosine between ray and normal by which the band is divided.

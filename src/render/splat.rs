@@ -163,13 +163,8 @@ impl Scene for Caps<'_> {
             let [first, second] = intersect::quadric_roots(cap.curvature, &local, cap.reach);
             hit(first).or_else(|| hit(second))
         }?;
-        let normal = self.look(item, found.at).normal;
-        let behind = normal.dot(ray.direction()) > 0.0;
-        let share = composite::yield_share(cap.clearance(found.at), self.yielding, behind);
-        if share == 0.0 {
-            return Some(found);
-        }
-        let gives_way = share * composite::depth_yielded(self.gives_way, normal, ray.direction());
+        let (distance, normal) = (cap.clearance(found.at) / self.yielding, self.look(item, found.at).normal);
+        let gives_way = composite::depth_yielded(distance, self.gives_way, normal, ray.direction());
         Some(Hit { gives_way, ..found })
     }
 

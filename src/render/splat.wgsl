@@ -132,10 +132,11 @@ fn normal_at(cap: Cap, uv: vec2<f32>) -> vec3<f32> {
 //#end
 }
 
-// By which share of all that it may, a hit gives way to what lies deeper.
-fn gives_way(cap: Cap, hit: Hit, behind: bool) -> f32 {
+// By how many widths a hit gives way to what lies deeper.
+fn gives_way(cap: Cap, hit: Hit, outward: vec3<f32>, direction: vec3<f32>) -> f32 {
 //#if CLIPPED
-    return yield_share(clearance(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy), behind);
+    let distance = clearance(cap.words.y, cap.words.z, hit.uv / cap.shape.xy, cap.shape.xy);
+    return yielded(distance, outward, direction);
 //#else
     return 0.0;
 //#end
@@ -143,7 +144,7 @@ fn gives_way(cap: Cap, hit: Hit, behind: bool) -> f32 {
 
 struct Visible {
     @builtin(frag_depth) depth: f32,
-    // Normal and depth. The normal is longer than one unit by the share by which it gives way.
+    // Normal and depth. The normal is longer than one unit by the widths by which it gives way.
     @location(0) surface: vec4<f32>,
     // Index and colour by kind, plus 1 so that 0 is nothing.
     @location(1) word: u32,
@@ -159,11 +160,10 @@ fn visibility(cap: Cap) -> Visible {
     }
     let direction = vec3<f32>(ray.slope, 1.0);
     let outward = normal_at(cap, hit.uv);
-    let share = gives_way(cap, hit, dot(outward, direction) > 0.0);
-    let normal = face(outward, direction);
-    let order = hit.depth + share * depth_yielded(normal, direction);
+    let widths = gives_way(cap, hit, outward, direction);
+    let order = hit.depth + YIELD_SHARE * eye.band * widths;
     let along = (order - eye.depth_range.x) / (eye.depth_range.y - eye.depth_range.x);
-    let surface = vec4<f32>((1.0 + share) * normal, hit.depth);
+    let surface = vec4<f32>((1.0 + widths) * face(outward, direction), hit.depth);
     return Visible(along, surface, cap.words.x + 1u);
 }
 
@@ -178,7 +178,7 @@ struct Sums {
 }
 
 // Above what the length of a normal is rounded by.
-const SHARE_ROUNDING: f32 = 1e-5;
+const WIDTHS_ROUNDING: f32 = 1e-5;
 
 // The hit of a splat that belongs to the visible surface: within the band behind the nearest
 // hit, facing the same way, and on the same side of lines.
@@ -191,7 +191,7 @@ struct Part {
 fn part(cap: Cap) -> Part {
     let ray = ray_through(cap.position.xy);
     let surface = textureLoad(surfaces, vec2<u32>(cap.position.xy), 0);
-    let share = length(surface.xyz) - 1.0;
+    let widths = length(surface.xyz) - 1.0;
     let visible = normalize(surface.xyz);
     let hit = hit(cap, ray);
     let direction = vec3<f32>(ray.slope, 1.0);
@@ -200,12 +200,11 @@ fn part(cap: Cap) -> Part {
         return Part(false, 0.0, vec3<f32>(0.0));
     }
     let outward = normal_at(cap, hit.uv);
-    let normal = face(outward, direction);
     // What gives way by more is of the other side of an edge, or of this one and no better.
-    let yielded = (share + SHARE_ROUNDING) * depth_yielded(visible, direction);
-    if gives_way(cap, hit, dot(outward, direction) > 0.0) * depth_yielded(normal, direction) > yielded {
+    if gives_way(cap, hit, outward, direction) > widths + WIDTHS_ROUNDING {
         return Part(false, 0.0, vec3<f32>(0.0));
     }
+    let normal = face(outward, direction);
     return Part(dot(normal, visible) >= AGREE_COSINE, hit.ellipse, normal);
 }
 
