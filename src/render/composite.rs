@@ -93,8 +93,8 @@ mod tests {
             depth_yielded(distance, 1.0, up * DVec3::NEG_Z, DVec3::new(lean, 0.0, 1.0))
         };
         assert!((yielded(0.0, 1.0, 1.0) - 1.0).abs() < 1e-12, "at 45 degrees as deep as wide");
-        assert!((yielded(0.0, 0.5, 1.0) - 2.0).abs() < 1e-12, "twice as deep at half the slope");
-        assert!((yielded(0.5, 0.5, 1.0) - 1.0).abs() < 1e-12, "half as deep half a reach from the curve");
+        assert!((yielded(0.0, 0.8, 1.0) - 1.25).abs() < 1e-12, "a quarter deeper at 0.8 of the slope");
+        assert!((yielded(0.5, 1.0, 1.0) - 0.5).abs() < 1e-12, "half as deep half a reach from the curve");
         assert_eq!((yielded(1.1, 0.5, 1.0), yielded(2.1, 0.5, -1.0)), (0.0, 0.0), "nothing farther off");
         let most = yielded(0.0, 0.0, 1.0);
         assert!((most - 1.0 / SINE_FLOOR).abs() < 1e-12, "but not without end");

@@ -30,9 +30,9 @@ pub const YIELD_SHARE: f64 = 0.5;
 pub const YIELD_BEHIND: f64 = 2.0;
 
 /// Least sine between ray and normal by which that is divided. The steeper a ray, the deeper below a place
-/// beyond the line it meets what lies across, a wall that it runs along; at less than 12 degrees from such a
-/// wall little of that is seen.
-pub const SINE_FLOOR: f64 = 0.2;
+/// beyond the line it meets what lies across, a wall that it runs along. Less would let edges be seen once from
+/// nearer than 17 degrees to a wall, too, but show what lies more than four bounds deeper, as through a hole.
+pub const SINE_FLOOR: f64 = 0.5;
 
 /// Least cosine between ray and normal by which the band is divided.
 ///
