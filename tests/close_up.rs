@@ -56,7 +56,8 @@ fn an_edge_is_one_smooth_curve_a_hundred_times_enlarged() {
     let asset = cylinder();
     for (n, lean) in (0..AROUND).flat_map(|n| LEANS.map(|lean| (n, lean))) {
         let columns = lids(&asset, TAU * (f64::from(n) + 0.37) / f64::from(AROUND), lean);
-        let ends: Vec<usize> = columns.iter().map(|column| column.partition_point(|lid| *lid)).collect();
+        let end = |column: &Vec<bool>| column.iter().position(|lid| !lid).unwrap_or(column.len());
+        let ends: Vec<usize> = columns.iter().map(end).collect();
         for (column, &end) in columns.iter().zip(&ends) {
             assert!(column[end..].iter().all(|lid| !lid), "{n}, {lean}: the lid shows again below the edge");
         }

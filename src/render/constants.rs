@@ -21,8 +21,8 @@ pub const BAND_FLOOR: f64 = 2e-6;
 /// two sides the middle is the edge.
 pub const YIELD_ERRORS: f64 = 1.0;
 
-/// Share of the band by which what lies on a clip curve gives way: twice as much as two splats may stand
-/// apart there.
+/// Share of the band by which what lies on a clip curve gives way, along the surface: twice as much as two
+/// splats may stand apart there.
 pub const YIELD_SHARE: f64 = 0.5;
 
 /// What is seen from behind gives way this many times as far from its curves, by all that anything may: a ray

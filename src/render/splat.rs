@@ -163,7 +163,12 @@ impl Scene for Caps<'_> {
             let [first, second] = intersect::quadric_roots(cap.curvature, &local, cap.reach);
             hit(first).or_else(|| hit(second))
         }?;
-        let (distance, normal) = (cap.clearance(found.at) / self.yielding, self.look(item, found.at).normal);
+        let distance = cap.clearance(found.at) / self.yielding;
+        if distance >= constants::YIELD_BEHIND {
+            // Most are: far from any curve nothing gives way.
+            return Some(found);
+        }
+        let normal = self.look(item, found.at).normal;
         let gives_way = composite::depth_yielded(distance, self.gives_way, normal, ray.direction());
         Some(Hit { gives_way, ..found })
     }
