@@ -1,7 +1,7 @@
 //! From a point cloud to its surface: sort and merge, find neighbours, give normals, cut
 //! along feature lines, given or found, join.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::cloud_assembly::Assembly;
@@ -226,7 +226,8 @@ fn cut(
     if found.estimated {
         let mut again = found.normals.clone();
         parted(points, nearest, &|a, b| cut.parts(&sites, a, b), &mut again);
-        found.normals = again;
+        let mended = |(point, normal): (usize, &Vec3)| cut.mended(&sites, point as u32, *normal);
+        found.normals = again.par_iter().enumerate().map(mended).collect();
     }
     cut
 }

@@ -22,6 +22,10 @@ const AGREE: f64 = 0.5;
 /// no border hangs loose.
 const JOINED: usize = 4;
 
+/// An estimated normal that agrees less than this (cosine of 25°) with the sheet beside whose border its point
+/// lies is of points of several sheets.
+const MIXED: f32 = 0.906;
+
 /// Points this many spacings from a line are joined to its border.
 const BESIDE: f64 = 1.5;
 
@@ -32,9 +36,9 @@ const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// around knows which are of the same sheet.
 const SEEN: f32 = 1.0;
 
-/// How far beyond its ends, in shares of its length, a segment still parts sheets: a little
-/// where the line goes on, so that nothing slips between two segments; not quite to the end
-/// where it does not, since what lies there belongs to a third sheet.
+/// How far beyond its ends, in shares of its length or that of the next, a segment still parts sheets: a little
+/// where the line goes on, so that nothing slips between two segments; not quite to the end where it does not,
+/// since what lies there belongs to a third sheet.
 const PARTS: (f64, f64) = (0.25, -0.1);
 
 /// A border of one sheet along one segment.
@@ -176,19 +180,18 @@ impl LineCut {
     #[must_use]
     pub fn parts(&self, sites: &Sites, a: u32, b: u32) -> bool {
         let beside = |n: u32| self.sheets.beside[n as usize].as_ref().map(|beside| beside.segment);
-        let (near_a, near_b) = (beside(a), beside(b));
-        if near_a.is_none() && near_b.is_none() {
+        let own = [a, b].map(beside);
+        if own == [None; 2] {
             return false;
         }
         let points = [a, b].map(|n| sites.positions[n as usize].as_dvec3());
-        let own = [near_a, near_b.filter(|_| near_a != near_b)];
-        own.into_iter().flatten().any(|segment| {
-            let nodes = self.network.segments[segment as usize];
-            let around = nodes.into_iter().flat_map(|node| self.network.at_node.row(node).iter().copied());
-            std::iter::once(segment)
-                .chain(around.filter(|&other| other != segment))
-                .any(|segment| self.segment_parts(segment, points))
-        })
+        let length = points[0].distance(points[1]);
+        let mut near = Vec::new();
+        for (own, point) in own.into_iter().zip(points) {
+            near.extend(own.filter(|own| !near.contains(own)));
+            self.network.follow(&mut near, point, length);
+        }
+        near.into_iter().any(|segment| self.segment_parts(segment, points))
     }
 
     fn segment_parts(&self, segment: u32, [p, q]: [DVec3; 2]) -> bool {
@@ -207,8 +210,8 @@ impl LineCut {
         // Where the way passes the line: nearer to the place of the nearer point.
         let at = if rp + rq > 0.0 { (tp * rq + tq * rp) / (rp + rq) } else { 0.5 * (tp + tq) };
         let beyond = |end: usize| {
-            let node = self.network.segments[segment as usize][end];
-            if self.network.beyond(segment, node) == NONE { PARTS.1 } else { PARTS.0 }
+            let next = self.network.beyond(segment, self.network.segments[segment as usize][end]);
+            if next == NONE { PARTS.1 } else { PARTS.0 * (self.network.length(next) / length).min(1.0) }
         };
         at > -beyond(0) && at < 1.0 + beyond(1)
     }
@@ -221,6 +224,13 @@ impl LineCut {
         let sheet = self.sheets.toward(&self.network, beside.segment, position)?;
         let border = self.first_border[beside.segment as usize] as usize + sheet;
         (near && !beside.at_end).then(|| &self.borders[border])
+    }
+
+    /// The normal of a point, where it lies beside a border and its own mixes sheets: that of the border's.
+    #[must_use]
+    pub fn mended(&self, sites: &Sites, point: u32, normal: Vec3) -> Vec3 {
+        let sheet = self.border_beside(sites, point).map(|border| self.sheet(border).normal.as_vec3());
+        sheet.filter(|sheet| sheet.dot(normal) < MIXED).unwrap_or(normal)
     }
 
     /// Pairs of a point on a line and a point of the cloud that the surface joins.
@@ -298,10 +308,7 @@ impl LineCut {
     #[must_use]
     pub fn found(&self) -> (usize, f64) {
         let found = (0_u32..).zip(&self.sheets.of).filter(|(_, sheets)| !sheets.is_empty());
-        let lengths = found.map(|(segment, _)| {
-            let [a, b] = self.network.ends(segment);
-            a.distance(b)
-        });
+        let lengths = found.map(|(segment, _)| self.network.length(segment));
         lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length))
     }
 }
@@ -338,6 +345,112 @@ mod tests {
         let nearest = search.nearest();
         let spacing = spacing(points, &nearest);
         (search, nearest, spacing)
+    }
+
+    /// Points strewn over an L of height 1: the square `[-1, 1]²` without its quarter of positive coordinates.
+    fn ell(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
+        let value = |n: u64| (mix(n) >> 40) as f32 / (1 << 24) as f32;
+        let squares = [(-1.0, -1.0), (0.0, -1.0), (-1.0, 0.0)];
+        let levels = [(0.0, Vec3::NEG_Z), (1.0, Vec3::Z)];
+        let ends = squares
+            .iter()
+            .flat_map(|&(x, y)| levels.map(|(z, out)| (Vec3::new(x, y, z), Vec3::X, Vec3::Y, out)));
+        let wall = |x: f32, y: f32, along: Vec3, out: Vec3| (Vec3::new(x, y, 0.0), along, Vec3::Z, out);
+        let walls = [
+            wall(-1.0, -1.0, Vec3::X, Vec3::NEG_Y),
+            wall(0.0, -1.0, Vec3::X, Vec3::NEG_Y),
+            wall(1.0, -1.0, Vec3::Y, Vec3::X),
+            wall(0.0, 0.0, Vec3::X, Vec3::Y),
+            wall(0.0, 0.0, Vec3::Y, Vec3::X),
+            wall(-1.0, 1.0, Vec3::X, Vec3::Y),
+            wall(-1.0, -1.0, Vec3::Y, Vec3::NEG_X),
+            wall(-1.0, 0.0, Vec3::Y, Vec3::NEG_X),
+        ];
+        let faces: Vec<_> = ends.chain(walls).collect();
+        (0..faces.len() as u64 * each)
+            .map(|n| {
+                let (corner, right, up, out) = faces[(n % faces.len() as u64) as usize];
+                (corner + value(2 * n) * right + value(2 * n + 1) * up, out)
+            })
+            .unzip()
+    }
+
+    /// The edges of that, in pieces of all lengths up to `longest`; the one of the inner corner slants by its ends.
+    fn ell_edges(longest: f64) -> Vec<Vec<DVec3>> {
+        let around = [(-1.0, -1.0), (1.0, -1.0), (1.0, 0.0), (0.0, 0.0), (0.0, 1.0), (-1.0, 1.0)];
+        let at = |n: usize, z: f64| DVec3::new(around[n % 6].0, around[n % 6].1, z);
+        let mut lines: Vec<Vec<DVec3>> = Vec::new();
+        for n in 0..6 {
+            let slant = if n == 3 { 0.05 * longest * DVec3::new(1.0, 1.0, 0.0) } else { DVec3::ZERO };
+            let upright = [0.0, longest, 1.0 - longest, 1.0].map(|z| at(n, z));
+            lines.push(vec![upright[0], upright[1] - slant, upright[2] - slant, upright[3]]);
+            lines.extend([0.0, 1.0].map(|z| vec![at(n, z), at(n + 1, z)]));
+        }
+        lines.into_iter().map(|line| cut_up(&line, longest)).collect()
+    }
+
+    fn cut_up(line: &[DVec3], longest: f64) -> Vec<DVec3> {
+        let mut places = vec![line[0]];
+        for (&to, n) in line[1..].iter().zip(0_u64..) {
+            let from = places[places.len() - 1];
+            let (mut way, length) = (0.0, from.distance(to));
+            for k in 0.. {
+                way += longest * (0.05 + 0.95 * (mix(100 * n + k) >> 11) as f64 / (1_u64 << 53) as f64);
+                if way >= length {
+                    break;
+                }
+                places.push(from.lerp(to, way / length));
+            }
+            places.push(to);
+        }
+        places
+    }
+
+    #[test]
+    fn faces_are_parted_everywhere_along_their_edges() {
+        let (positions, normals) = ell(2000);
+        let (search, nearest, spacing) = lay(&positions);
+        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let cut = LineCut::new(Network::new(&ell_edges(1.0 / 45.0), &search, &positions, &spacing), &sites);
+        for (segment, sheets) in (0_u32..).zip(&cut.sheets.of) {
+            assert_eq!(sheets.len(), 2, "each edge is of two faces: {:?}", cut.network.ends(segment));
+        }
+        let mut apart = 0;
+        for point in 0..positions.len() as u32 {
+            for other in super::super::nearest::listed(&nearest[point as usize]) {
+                let across = normals[point as usize] != normals[other as usize];
+                let parted = cut.parts(&sites, point, other);
+                let middle = positions[point as usize].midpoint(positions[other as usize]);
+                // Through the solid at the inner corners, ways from face to face pass no edge.
+                let inner = middle.truncate().length().max(middle.z.min(1.0 - middle.z)) < 2.0 / 45.0;
+                assert!(parted || !across || inner, "{middle}: {point} is joined to {other} across an edge");
+                apart += u32::from(parted && !across);
+            }
+        }
+        // Ways past the end of a line that slants toward them.
+        assert!(apart < 100, "{apart} pairs of one face are parted");
+    }
+
+    #[test]
+    fn a_normal_of_several_faces_becomes_that_of_the_face() {
+        let (positions, normals) = cube(1500);
+        let (search, nearest, spacing) = lay(&positions);
+        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let cut = LineCut::new(Network::new(&edges(), &search, &positions, &spacing), &sites);
+        let (mut beside, mut far) = (0, 0);
+        for (point, own) in (0_u32..).zip(&normals) {
+            let tilted = (*own + own.any_orthonormal_vector()).normalize();
+            let nearly = (*own + 0.3 * own.any_orthonormal_vector()).normalize();
+            assert_eq!(cut.mended(&sites, point, nearly), nearly);
+            if cut.border_beside(&sites, point).is_some() {
+                assert!(cut.mended(&sites, point, tilted).dot(*own) > 0.999, "{}", positions[point as usize]);
+                beside += 1;
+            } else {
+                assert_eq!(cut.mended(&sites, point, tilted), tilted);
+                far += 1;
+            }
+        }
+        assert!(beside > 500 && far > 5000, "{beside} {far}");
     }
 
     #[test]

@@ -88,11 +88,44 @@ impl Network {
         self.segments[segment as usize].map(|node| self.nodes[node as usize].as_dvec3())
     }
 
+    /// A segment's length.
+    #[must_use]
+    pub fn length(&self, segment: u32) -> f64 {
+        let [a, b] = self.ends(segment);
+        a.distance(b)
+    }
+
     /// Unit vector from a segment's first end to its second.
     #[must_use]
     pub fn along(&self, segment: u32) -> DVec3 {
         let [a, b] = self.ends(segment);
         (b - a).normalize_or(DVec3::X)
+    }
+
+    /// Adds to some segments all that meet them, and those that meet these in turn as far as they do within
+    /// `reach` of a place.
+    pub fn follow(&self, segments: &mut Vec<u32>, place: DVec3, reach: f64) {
+        let (given, mut at) = (segments.len(), 0);
+        while at < segments.len() {
+            for node in self.segments[segments[at] as usize] {
+                if at >= given && self.nodes[node as usize].as_dvec3().distance(place) > reach {
+                    continue;
+                }
+                for &other in self.at_node.row(node) {
+                    if !segments.contains(&other) {
+                        segments.push(other);
+                    }
+                }
+            }
+            at += 1;
+        }
+    }
+
+    /// The node of a segment that is not this one of its two.
+    #[must_use]
+    pub fn across(&self, segment: u32, node: u32) -> u32 {
+        let [a, b] = self.segments[segment as usize];
+        if a == node { b } else { a }
     }
 
     /// The segment that carries another smoothly on beyond one of its nodes; or [`NONE`].

@@ -22,6 +22,10 @@ const TOO_NEAR: f64 = 0.3;
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
 const WINDOW: usize = 8;
 
+/// A point's nearest place on a line is where the line ends if it lies within this share of its distance from
+/// there (11°): a line's last segment may slant a little, and face points that lie past its end.
+const AT_END: f64 = 0.2;
+
 /// Segments that turn away from the one in question by more than this (cosine of 30°) do not
 /// vote.
 const ALIGNED: f64 = 0.866;
@@ -54,7 +58,7 @@ pub struct Beside {
     pub segment: u32,
     /// From the place to the point.
     pub offset: DVec3,
-    /// Whether the place is where a line ends or turns sharply.
+    /// Whether the place is, or nearly is, where a line ends or turns sharply.
     pub at_end: bool,
 }
 
@@ -114,9 +118,26 @@ impl Sheets {
 fn beside(network: &Network, segment: u32, point: DVec3) -> Beside {
     let [a, b] = network.ends(segment);
     let place = nearest_on(a, b, point);
-    let nodes = network.segments[segment as usize];
-    let ends_at = |end: DVec3, node: u32| place == end && network.beyond(segment, node) == NONE;
-    Beside { segment, offset: point - place, at_end: ends_at(a, nodes[0]) || ends_at(b, nodes[1]) }
+    let offset = point - place;
+    let reach = AT_END * offset.length();
+    let at_end =
+        network.segments[segment as usize].iter().any(|&node| ends(network, segment, node, place, reach));
+    Beside { segment, offset, at_end }
+}
+
+/// Whether a line ends or turns sharply within `reach` of a place on one of its segments, beyond a node of that.
+fn ends(network: &Network, mut segment: u32, mut node: u32, place: DVec3, reach: f64) -> bool {
+    for _ in 0..WINDOW {
+        if network.nodes[node as usize].as_dvec3().distance(place) > reach {
+            return false;
+        }
+        segment = network.beyond(segment, node);
+        if segment == NONE {
+            return true;
+        }
+        node = network.across(segment, node);
+    }
+    false
 }
 
 /// The segments that carry one on in both directions, itself first.
@@ -132,8 +153,7 @@ fn window(network: &Network, segment: u32) -> Vec<u32> {
                 break;
             }
             found.push(at);
-            let [a, b] = network.segments[at as usize];
-            node = if a == node { b } else { a };
+            node = network.across(at, node);
         }
     }
     found
