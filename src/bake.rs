@@ -1,5 +1,6 @@
 //! The recipe: from a mesh or cloud to an asset, one stage a line.
 
+mod bound;
 pub mod found_lines;
 mod growing;
 pub mod kept;
@@ -44,7 +45,7 @@ use crate::sample::cover::{Choice, cover};
 use crate::sample::edge_cases::EdgeCases;
 use crate::sample::lower_bound::LowerBound;
 use crate::sample::scout::Begun;
-use crate::tolerance::COARSEST_CLOSED;
+pub use bound::model_error;
 pub use found_lines::found_lines;
 use growing::Growing;
 pub use kept::{Kept, kept};
@@ -248,59 +249,6 @@ fn diagonal(positions: &[Vec3]) -> f64 {
     }
     (high.as_dvec3() - low.as_dvec3()).length()
 }
-
-/// The greatest bound of 32 bits, which a file keeps in four bytes, that is no looser than this one.
-fn no_looser(bound: f64) -> f64 {
-    let nearest = bound as f32;
-    f64::from(if f64::from(nearest) > bound { nearest.next_down() } else { nearest })
-}
-
-/// The error bound of a bake in model units: that of the options to 32 bits, or less where
-/// [`Holes::Close`] asks for it.
-///
-/// # Errors
-/// [`Error::Usage`] for options out of range, and for an input without extent.
-pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
-    let (diagonal, scale) = (diagonal(&input.cloud().positions), input.cloud().frame.scale());
-    if options.clips == Clips::Partners && matches!(options.edges, Edges::Given(_)) {
-        return Err(Error::Usage(
-            "clip partners take no feature lines: leave --edges out, or cut along them with --clips curved"
-                .into(),
-        ));
-    }
-    if !(1..=9).contains(&options.effort) {
-        return Err(Error::Usage(format!("effort {} is not within 1 to 9", options.effort)));
-    }
-    let error = match options.max_error {
-        MaxError::Relative(share) => share * diagonal,
-        MaxError::Absolute(units) => units / scale,
-    };
-    if diagonal <= 0.0 {
-        return Err(Error::Usage(
-            "all points of the input lie at one place: there is no surface to bake".into(),
-        ));
-    }
-    if !(error > 0.0 && error.is_finite()) {
-        return Err(Error::Usage(
-            "the error bound must be greater than zero; give --max-error in the input's units".into(),
-        ));
-    }
-    if error < LEAST_ERROR_SHARE * diagonal {
-        return Err(Error::Usage(format!(
-            "the error bound is {:.1e} of the model's size, finer than positions are kept; the least is {:.1e}",
-            error / diagonal,
-            LEAST_ERROR_SHARE
-        )));
-    }
-    // Where a cloud's outline lies is a guess.
-    Ok(no_looser(match (input, options.holes) {
-        (Input::Mesh(_), Holes::Close) => error.min(COARSEST_CLOSED * diagonal),
-        (Input::Cloud(_), _) | (_, Holes::Leave) => error,
-    }))
-}
-
-/// Bounds below this share of the diagonal drown in the rounding of 32-bit positions.
-const LEAST_ERROR_SHARE: f64 = 1e-6;
 
 /// No refinement makes more pieces than this.
 const MOST_PIECES: usize = 4_000_000;

@@ -117,12 +117,13 @@ pub enum Meaning {
     Auto,
 }
 
-/// What becomes of places where pictures of a mesh's splats show more or less than the mesh.
+/// What becomes of places where pictures of the splats show more or less than the input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Holes {
-    /// Holes that pictures 512 pixels wide from the 26 directions of the cube show, and what they show
-    /// beside the outline, are mended as far as splats within the bound can do without. A bound wider than
-    /// a pixel of these is narrowed. Where partners cut, it is narrowed alone.
+    /// Holes that pictures of a mesh 512 pixels wide from the 26 directions of the cube show, and what they
+    /// show beside the outline, are mended as far as splats within the bound can do without. A bound wider
+    /// than a pixel of these is narrowed, that of a cloud too unless its noise is above a sixth of that. For
+    /// clouds, and where partners cut, it is narrowed alone.
     #[default]
     Close,
     /// The bound alone rules.
@@ -155,7 +156,7 @@ pub struct Options {
     pub shapes: Shapes,
     /// What splats may be cut by; less than all is for comparison, at the same guarantees.
     pub clips: Clips,
-    /// What becomes of holes that pictures of a mesh's splats show.
+    /// What becomes of holes that pictures of the splats show.
     pub holes: Holes,
     /// Whether to find out how little any cover by the same candidates could cost. It changes nothing
     /// about the splats.
