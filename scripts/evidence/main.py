@@ -53,12 +53,12 @@ def top(given):
 
 ABOUT = [
     "All at defaults (effort 5) but for what a row names. The *bound* is a percentage of the diagonal of the bounding "
-    "box. At defaults one coarser than a pixel of the views is narrowed to that, but for a noisy cloud, "
-    "so that several bounds give one file; `--holes leave` keeps them. *Flat*, *cylinder* and *quadric* splats make all; *clipped* are those of "
-    "any kind that are cut. *Bytes* are those of the file, colours included where the input has any. *Seconds* are on "
-    "the clock, *processor* those of all threads. Distances are in bounds: *fit* of the input's points along the "
-    "splats' normals, *forward* from the input to the splats, *backward* from the splats to the input, *edge* between "
-    "feature lines and cuts, both ways. *Normals* are the angles between theirs. *Missing*, *extra* and *through* "
+    "box. At defaults one coarser than a pixel of the views is narrowed to that, but for a noisy cloud, so that "
+    "several bounds give one file; `--holes leave` keeps them. *Flat*, *cylinder* and *quadric* splats make all; "
+    "*clipped* are those of any kind that are cut. *Bytes* are those of the file, colours included where the input has "
+    "any. *Seconds* are on the clock, *processor* those of all threads. Distances are in bounds: *fit* of the input's "
+    "points along the splats' normals, *forward* from the input to the splats, *backward* from the splats to the input, "
+    "*edge* between feature lines and cuts, both ways. *Normals* are the angles between theirs. *Missing*, *extra* and *through* "
     "count pixels of 26 views; *overlap* is the splats' area over the surface's; *outliers* are points of a cloud that "
     "belong to no surface and are left out ([measure-schema.md](measure-schema.md)). [models.csv](models.csv) has the "
     "same rows, and more of each.",

@@ -76,7 +76,7 @@ class Runs:
             say(f"  bake {path.name} {' '.join(str(option) for option in options)}")
             report = self.work / "bakes" / f"{key}.report.json"
             done = self.call("bake", path, *options, "-o", made, "--report", report, "--quiet")
-            # Where the folder of the inputs lies is nobody's business.
+            # The page is the same wherever the inputs lie.
             words = done.stderr.replace(f"{path.parent}/", "").strip() or f"exit code {done.returncode}"
             facts = {
                 "report": json.loads(report.read_text()) if done.returncode == 0 else None,

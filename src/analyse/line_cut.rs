@@ -319,7 +319,8 @@ mod tests {
 
     use super::*;
     use crate::analyse::canonical::mix;
-    use crate::analyse::nearest::{Nearest, Search, spacing};
+    use crate::analyse::nearest::{Nearest, Search, listed, spacing};
+    use crate::analyse::planted::random;
 
     /// Points strewn over the faces of the cube `[-1, 1]³ / 2`, with their normals.
     fn cube(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
@@ -349,7 +350,7 @@ mod tests {
 
     /// Points strewn over an L of height 1: the square `[-1, 1]²` without its quarter of positive coordinates.
     fn ell(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
-        let value = |n: u64| (mix(n) >> 40) as f32 / (1 << 24) as f32;
+        let value = |n: u64| 0.5 + 0.5 * random(n) as f32;
         let squares = [(-1.0, -1.0), (0.0, -1.0), (-1.0, 0.0)];
         let levels = [(0.0, Vec3::NEG_Z), (1.0, Vec3::Z)];
         let ends = squares
@@ -389,13 +390,14 @@ mod tests {
         lines.into_iter().map(|line| cut_up(&line, longest)).collect()
     }
 
+    /// A line with more vertices between its own, up to `longest` apart.
     fn cut_up(line: &[DVec3], longest: f64) -> Vec<DVec3> {
         let mut places = vec![line[0]];
         for (&to, n) in line[1..].iter().zip(0_u64..) {
             let from = places[places.len() - 1];
             let (mut way, length) = (0.0, from.distance(to));
             for k in 0.. {
-                way += longest * (0.05 + 0.95 * (mix(100 * n + k) >> 11) as f64 / (1_u64 << 53) as f64);
+                way += longest * (0.525 + 0.475 * random(100 * n + k));
                 if way >= length {
                     break;
                 }
@@ -411,24 +413,25 @@ mod tests {
         let (positions, normals) = ell(2000);
         let (search, nearest, spacing) = lay(&positions);
         let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
-        let cut = LineCut::new(Network::new(&ell_edges(1.0 / 45.0), &search, &positions, &spacing), &sites);
+        let apart = 1.0_f32 / 45.0;
+        let cut = LineCut::new(Network::new(&ell_edges(apart.into()), &search, &positions, &spacing), &sites);
         for (segment, sheets) in (0_u32..).zip(&cut.sheets.of) {
             assert_eq!(sheets.len(), 2, "each edge is of two faces: {:?}", cut.network.ends(segment));
         }
-        let mut apart = 0;
+        let mut needless = 0;
         for point in 0..positions.len() as u32 {
-            for other in super::super::nearest::listed(&nearest[point as usize]) {
+            for other in listed(&nearest[point as usize]) {
                 let across = normals[point as usize] != normals[other as usize];
                 let parted = cut.parts(&sites, point, other);
                 let middle = positions[point as usize].midpoint(positions[other as usize]);
                 // Through the solid at the inner corners, ways from face to face pass no edge.
-                let inner = middle.truncate().length().max(middle.z.min(1.0 - middle.z)) < 2.0 / 45.0;
+                let inner = middle.truncate().length().max(middle.z.min(1.0 - middle.z)) < 2.0 * apart;
                 assert!(parted || !across || inner, "{middle}: {point} is joined to {other} across an edge");
-                apart += u32::from(parted && !across);
+                needless += u32::from(parted && !across);
             }
         }
         // Ways past the end of a line that slants toward them.
-        assert!(apart < 100, "{apart} pairs of one face are parted");
+        assert!(needless < 100, "{needless} pairs of one face are parted");
     }
 
     #[test]

@@ -121,9 +121,17 @@ impl Network {
         }
     }
 
+    /// A segment and those that carry it smoothly on beyond one of its nodes, each with the node that it leads to;
+    /// without end where the line is closed.
+    pub fn onward(&self, segment: u32, node: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
+        std::iter::successors(Some((segment, node)), |&(segment, node)| {
+            let next = self.beyond(segment, node);
+            (next != NONE).then(|| (next, self.across(next, node)))
+        })
+    }
+
     /// The node of a segment that is not this one of its two.
-    #[must_use]
-    pub fn across(&self, segment: u32, node: u32) -> u32 {
+    fn across(&self, segment: u32, node: u32) -> u32 {
         let [a, b] = self.segments[segment as usize];
         if a == node { b } else { a }
     }

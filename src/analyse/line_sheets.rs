@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::cloud_graph::Sites;
 use super::line_network::Network;
 use super::segment_grid::SegmentGrid;
-use super::surface::{NONE, Rows};
+use super::surface::Rows;
 use crate::model::polyline::nearest_on;
 
 /// Points within this many spacings of a line show its sheets.
@@ -126,18 +126,15 @@ fn beside(network: &Network, segment: u32, point: DVec3) -> Beside {
 }
 
 /// Whether a line ends or turns sharply within `reach` of a place on one of its segments, beyond a node of that.
-fn ends(network: &Network, mut segment: u32, mut node: u32, place: DVec3, reach: f64) -> bool {
-    for _ in 0..WINDOW {
+fn ends(network: &Network, segment: u32, node: u32, place: DVec3, reach: f64) -> bool {
+    let mut passed = 0;
+    for (_, node) in network.onward(segment, node).take(WINDOW) {
         if network.nodes[node as usize].as_dvec3().distance(place) > reach {
             return false;
         }
-        segment = network.beyond(segment, node);
-        if segment == NONE {
-            return true;
-        }
-        node = network.across(segment, node);
+        passed += 1;
     }
-    false
+    passed < WINDOW
 }
 
 /// The segments that carry one on in both directions, itself first.
@@ -145,15 +142,11 @@ fn window(network: &Network, segment: u32) -> Vec<u32> {
     let along = network.along(segment);
     let mut found = vec![segment];
     for start in network.segments[segment as usize] {
-        let (mut at, mut node) = (segment, start);
-        for _ in 0..WINDOW {
-            at = network.beyond(at, node);
-            let aligned = |at: u32| network.along(at).dot(along).abs() >= ALIGNED;
-            if at == NONE || found.contains(&at) || !aligned(at) {
+        for (at, _) in network.onward(segment, start).skip(1).take(WINDOW) {
+            if found.contains(&at) || network.along(at).dot(along).abs() < ALIGNED {
                 break;
             }
             found.push(at);
-            node = network.across(at, node);
         }
     }
     found
