@@ -32,7 +32,6 @@ pub use crate::fit::pose::Shapes;
 use crate::fit::pose::misfit;
 use crate::ingest::Input;
 use crate::model::asset::{Accuracy, Asset};
-use crate::model::cloud::Cloud;
 use crate::model::frame::Frame;
 use crate::model::mesh::Mesh;
 use crate::model::polyline::Polylines;
@@ -51,6 +50,7 @@ use growing::Growing;
 pub use kept::{Kept, kept};
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
+use noise::noise;
 pub use options::{Colors, DEFAULT_EFFORT, Edges, Holes, MaxError, Meaning, Normals, Options};
 use partnered::{partnered, rule};
 
@@ -335,10 +335,10 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
         }
         Input::Cloud(cloud) => {
             let given = given_lines(&meant.edges, &cloud.frame);
-            let lines = cloud_lines(cloud, &meant.edges, &given, options.edge_angle, max_error);
+            let lines = cloud_lines(&meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
             let CloudSurface { surface, left_out, edges, open_places, matched } =
-                cloud_surface(cloud, options.normals.into(), lines, Some(reach))?;
+                cloud_surface(cloud, options.normals.into(), lines, meant.noise_left(), Some(reach))?;
             let features = Found { feature_edges: edges, matched };
             Ok(Analysed { surface, marked: None, features, left_out, open_places })
         }
@@ -366,24 +366,16 @@ fn given_lines(edges: &Edges, frame: &Frame) -> Vec<Vec<DVec3>> {
 }
 
 /// Where the feature lines of a cloud come from; those that are `given` are its [`given_lines`].
-fn cloud_lines<'a>(
-    cloud: &Cloud,
-    edges: &Edges,
-    given: &'a [Vec<DVec3>],
-    edge_angle: f64,
-    max_error: f64,
-) -> Lines<'a> {
+fn cloud_lines<'a>(edges: &Edges, given: &'a [Vec<DVec3>], edge_angle: f64, max_error: f64) -> Lines<'a> {
     match edges {
-        Edges::Auto => Lines::Found(sought(cloud, edge_angle, max_error)),
+        Edges::Auto => Lines::Found(sought(edge_angle, max_error)),
         Edges::Given(_) | Edges::None => Lines::Given(given),
     }
 }
 
 /// Which creases of a cloud are feature lines.
-fn sought(cloud: &Cloud, edge_angle: f64, max_error: f64) -> Sought {
-    // Where no surface shows, noise is all there is.
-    let noise = noise::noise(&cloud.positions).unwrap_or(f64::INFINITY);
-    Sought { degrees: edge_angle, noise, shortest: SHORTEST_LINE * max_error }
+fn sought(edge_angle: f64, max_error: f64) -> Sought {
+    Sought { degrees: edge_angle, shortest: SHORTEST_LINE * max_error }
 }
 
 /// The lines along which a bake with these options cuts its splats, model units: feature lines,
@@ -411,7 +403,9 @@ pub fn feature_lines(
             cut_lines(mesh, &features(mesh, edges, edge_angle, max_error), &making)
         }
         (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
-        (Input::Cloud(cloud), Edges::Auto) => cloud_creases(cloud, &sought(cloud, edge_angle, max_error))?,
+        (Input::Cloud(cloud), Edges::Auto) => {
+            cloud_creases(cloud, &sought(edge_angle, max_error), noise(&cloud.positions))?
+        }
     };
     Ok((!lines.is_empty()).then_some(lines))
 }

@@ -49,6 +49,8 @@ pub struct Sites<'a> {
     pub spacing: &'a [f32],
     /// The nearest others of each.
     pub nearest: &'a Nearest,
+    /// Standard deviation of the points from their surface, model units.
+    pub noise: f64,
 }
 
 /// What one point is joined to.
@@ -229,7 +231,13 @@ mod tests {
         let nearest = super::super::nearest::Search::new(&positions).unwrap().nearest();
         let spacing = super::super::nearest::spacing(&positions, &nearest);
         let normals = vec![Vec3::Z; positions.len()];
-        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let sites = Sites {
+            positions: &positions,
+            normals: &normals,
+            spacing: &spacing,
+            nearest: &nearest,
+            noise: 0.0,
+        };
         let joined = sites.join(&|_, _| false);
         for n in 0..4000 {
             let place = 0.9 * Vec3::new(value(90_000 + 2 * n), value(90_001 + 2 * n), 0.0);

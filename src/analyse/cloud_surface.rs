@@ -12,7 +12,7 @@ use super::distinct::{Distinct, distinct};
 use super::given_lines::Matched;
 use super::line_cut::LineCut;
 use super::line_network::Network;
-use super::nearest::{Nearest, Search, spacing};
+use super::nearest::{Search, spacing};
 pub use super::open_places::OpenPlace;
 use super::open_places::open_places;
 use super::outliers::{Strewn, outliers};
@@ -73,7 +73,8 @@ struct Laid {
 
 /// The surface of a cloud, cut along feature lines.
 ///
-/// Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
+/// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
+/// none. Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
 ///
 /// Neither the order of points and lines nor repeated points change anything but `left_out`.
 /// Lines far from the cloud, and lines around which the points show no sheets, cut nothing.
@@ -84,9 +85,10 @@ pub fn cloud_surface(
     cloud: &Cloud,
     source: NormalSource,
     lines: Lines<'_>,
+    noise: Option<f64>,
     reach: Option<Reach>,
 ) -> Result<CloudSurface> {
-    let laid = Laid::of(cloud, source, lines)?;
+    let laid = Laid::of(cloud, source, lines, noise)?;
     let (left_out, open_places) = (laid.left_out(), laid.open_places());
     let Laid { points, normals, cut, joined, joins, on_line, outlier, lost, .. } = laid;
     let sheet = Sheet {
@@ -111,35 +113,41 @@ pub fn cloud_surface(
 ///
 /// # Errors
 /// As [`cloud_surface`].
-pub fn cloud_discs(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<CloudDiscs> {
-    let laid = Laid::of(cloud, source, lines)?;
+pub fn cloud_discs(
+    cloud: &Cloud,
+    source: NormalSource,
+    lines: Lines<'_>,
+    noise: Option<f64>,
+) -> Result<CloudDiscs> {
+    let laid = Laid::of(cloud, source, lines, noise)?;
     Ok(CloudDiscs { left_out: laid.left_out(), discs: laid.discs() })
 }
 
 impl Laid {
-    fn of(cloud: &Cloud, source: NormalSource, lines: Lines<'_>) -> Result<Self> {
+    fn of(cloud: &Cloud, source: NormalSource, lines: Lines<'_>, noise: Option<f64>) -> Result<Self> {
         let points = distinct(cloud);
         let search = Search::new(&points.positions)?;
         let nearest = search.nearest();
         let spacing = spacing(&points.positions, &nearest);
+        let unsided = Sites {
+            positions: &points.positions,
+            normals: &[],
+            spacing: &spacing,
+            nearest: &nearest,
+            noise: noise.unwrap_or_default(),
+        };
         let mut normals = normals(&points, &nearest, source)?;
         let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
         let mut network = match lines {
             Lines::Given(lines) => resampled(lines),
             Lines::Found(sought) => {
-                resampled(&found(&points.positions, &search, &nearest, &spacing, &sought)?)
+                resampled(&found(&points.positions, &search, &nearest, &spacing, &sought, noise)?)
             }
         };
         drop(search);
         let lost = std::mem::take(&mut network.far);
-        let cut =
-            (!network.segments.is_empty()).then(|| cut(network, &points, &nearest, &spacing, &mut normals));
-        let sites = Sites {
-            positions: &points.positions,
-            normals: &normals.normals,
-            spacing: &spacing,
-            nearest: &nearest,
-        };
+        let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &unsided, &mut normals));
+        let sites = Sites { normals: &normals.normals, ..unsided };
         let joined = joined(&sites, cut.as_ref());
         let joins = cut.as_ref().map(|cut| cut.joins(&sites)).unwrap_or_default();
         let ends = cut.as_ref().map(|cut| cut.ends(&sites, &joined)).unwrap_or_default();
@@ -213,19 +221,14 @@ fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
     joined
 }
 
-/// Cuts the cloud along a network; estimated normals beside it are estimated again.
-fn cut(
-    network: Network,
-    points: &Distinct,
-    nearest: &Nearest,
-    spacing: &[f32],
-    found: &mut Normals,
-) -> LineCut {
-    let sites = Sites { positions: &points.positions, normals: &found.normals, spacing, nearest };
+/// Cuts the cloud along a network; estimated normals beside it are estimated again. The sites' normals are
+/// those found.
+fn cut(network: Network, points: &Distinct, sites: &Sites<'_>, found: &mut Normals) -> LineCut {
+    let sites = Sites { normals: &found.normals, ..*sites };
     let cut = LineCut::new(network, &sites);
     if found.estimated {
         let mut again = found.normals.clone();
-        parted(points, nearest, &|a, b| cut.parts(&sites, a, b), &mut again);
+        parted(points, sites.nearest, &|a, b| cut.parts(&sites, a, b), &mut again);
         let mended = |(point, normal): (usize, &Vec3)| cut.mended(&sites, point as u32, *normal);
         found.normals = again.par_iter().enumerate().map(mended).collect();
     }

@@ -320,7 +320,7 @@ mod tests {
     use super::*;
     use crate::analyse::canonical::mix;
     use crate::analyse::nearest::{Nearest, Search, listed, spacing};
-    use crate::analyse::planted::random;
+    use crate::analyse::planted::{normal, random};
 
     /// Points strewn over the faces of the cube `[-1, 1]³ / 2`, with their normals.
     fn cube(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
@@ -346,6 +346,16 @@ mod tests {
         let nearest = search.nearest();
         let spacing = spacing(points, &nearest);
         (search, nearest, spacing)
+    }
+
+    /// Points without noise.
+    fn side_by_side<'a>(
+        positions: &'a [Vec3],
+        normals: &'a [Vec3],
+        nearest: &'a Nearest,
+        spacing: &'a [f32],
+    ) -> Sites<'a> {
+        Sites { positions, normals, spacing, nearest, noise: 0.0 }
     }
 
     /// Points strewn over an L of height 1: the square `[-1, 1]²` without its quarter of positive coordinates.
@@ -412,7 +422,7 @@ mod tests {
     fn faces_are_parted_everywhere_along_their_edges() {
         let (positions, normals) = ell(2000);
         let (search, nearest, spacing) = lay(&positions);
-        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let sites = side_by_side(&positions, &normals, &nearest, &spacing);
         let apart = 1.0_f32 / 45.0;
         let cut = LineCut::new(Network::new(&ell_edges(apart.into()), &search, &positions, &spacing), &sites);
         for (segment, sheets) in (0_u32..).zip(&cut.sheets.of) {
@@ -435,10 +445,33 @@ mod tests {
     }
 
     #[test]
+    fn the_faces_of_a_noisy_cube_are_told_apart() {
+        let (exact, normals) = cube(1500);
+        let noise = 0.4 / 1500_f64.sqrt();
+        let stray = |n: u64| noise * normal(n);
+        let strayed = |(n, at): (u64, &Vec3)| {
+            *at + DVec3::new(stray(3 * n), stray(3 * n + 1), stray(3 * n + 2)).as_vec3()
+        };
+        let positions: Vec<Vec3> = (0..).zip(&exact).map(strayed).collect();
+        let (search, nearest, spacing) = lay(&positions);
+        let quiet = side_by_side(&positions, &normals, &nearest, &spacing);
+        let network = Network::new(&edges(), &search, &positions, &spacing);
+        let whole = |sites: &Sites<'_>| {
+            let of = LineCut::new(network.clone(), sites).sheets.of;
+            of.iter().filter(|sheets| sheets.len() == 2).count() as f64 / of.len() as f64
+        };
+        let (told, untold) = (whole(&Sites { noise, ..quiet }), whole(&quiet));
+        assert!(
+            told > 0.98 && untold < 0.5,
+            "{told} and, noise unknown, {untold} of the segments have two faces"
+        );
+    }
+
+    #[test]
     fn a_normal_of_several_faces_becomes_that_of_the_face() {
         let (positions, normals) = cube(1500);
         let (search, nearest, spacing) = lay(&positions);
-        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let sites = side_by_side(&positions, &normals, &nearest, &spacing);
         let cut = LineCut::new(Network::new(&edges(), &search, &positions, &spacing), &sites);
         let (mut beside, mut far) = (0, 0);
         for (point, own) in (0_u32..).zip(&normals) {
@@ -460,7 +493,7 @@ mod tests {
     fn a_cube_falls_into_six_loops() {
         let (positions, normals) = cube(1500);
         let (search, nearest, spacing) = lay(&positions);
-        let sites = Sites { positions: &positions, normals: &normals, spacing: &spacing, nearest: &nearest };
+        let sites = side_by_side(&positions, &normals, &nearest, &spacing);
         let network = Network::new(&edges(), &search, &positions, &spacing);
         let (nodes, segments) = (network.nodes.len(), network.segments.len());
         assert_eq!(segments, nodes - 8 + 12, "twelve lines of one segment more than inner nodes");

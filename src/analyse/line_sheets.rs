@@ -12,11 +12,18 @@ use super::segment_grid::SegmentGrid;
 use super::surface::Rows;
 use crate::model::polyline::nearest_on;
 
-/// Points within this many spacings of a line show its sheets.
-const REACH: f64 = 3.0;
-
-/// Points nearer than this many spacings to a line have no direction from it to speak of.
+/// Points nearer than this many spacings to a line have no direction from it to speak of...
 const TOO_NEAR: f64 = 0.3;
+
+/// ... nor have those nearer than this many standard deviations of the noise, which turns the direction of
+/// one there by 11°: sheets at right angles are told apart still.
+const ABOVE_NOISE: f64 = 5.0;
+
+/// Noisier points than this, in spacings, are taken for no noisier: how a surface goes on hardly shows.
+const NOISIEST: f64 = 1.0;
+
+/// Points within this many spacings beyond those show the sheets of a line.
+const DEPTH: f64 = 2.7;
 
 /// Segments on either side, along the line, whose points vote too: four to eight spacings,
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
@@ -82,13 +89,13 @@ impl Sheets {
             .map(|n| {
                 let spacing = f64::from(sites.spacing[n]);
                 let point = sites.positions[n].as_dvec3();
-                let near = grid.nearest(point, REACH * spacing)?;
+                let near = grid.nearest(point, too_near(sites, n) + DEPTH * spacing)?;
                 Some(beside(network, near.segment, point))
             })
             .collect();
         let votes = |(n, beside): (usize, &Option<Beside>)| {
             let beside = beside.as_ref().filter(|beside| !beside.at_end)?;
-            let far = beside.offset.length() > TOO_NEAR * f64::from(sites.spacing[n]);
+            let far = beside.offset.length() > too_near(sites, n);
             far.then_some((beside.segment, n as u32))
         };
         let voters =
@@ -113,6 +120,12 @@ impl Sheets {
         });
         nearest.map(|(index, _)| index)
     }
+}
+
+/// Within how far of a line a point has no direction from it, model units.
+fn too_near(sites: &Sites, point: usize) -> f64 {
+    let spacing = f64::from(sites.spacing[point]);
+    (TOO_NEAR * spacing).max(ABOVE_NOISE * sites.noise.min(NOISIEST * spacing))
 }
 
 fn beside(network: &Network, segment: u32, point: DVec3) -> Beside {

@@ -180,7 +180,7 @@ mod tests {
             normals: normals.iter().map(|normal| normal.as_vec3()).collect(),
             ..Cloud::default()
         };
-        cloud_discs(&cloud, NormalSource::Auto, Lines::Given(&[])).unwrap().left_out
+        cloud_discs(&cloud, NormalSource::Auto, Lines::Given(&[]), None).unwrap().left_out
     }
 
     #[test]

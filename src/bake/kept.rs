@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::noise::noise;
 use super::options::{Edges, Options};
 use super::{cloud_lines, given_lines};
 use crate::analyse::cloud_surface::{CloudDiscs, cloud_discs};
@@ -34,8 +35,9 @@ pub fn kept<'a>(input: &'a Input, edges: &Edges, options: &Options, max_error: f
         return Ok(Kept { input: whole, outliers: 0, discs: Discs::default() });
     };
     let given = given_lines(edges, &cloud.frame);
-    let lines = cloud_lines(cloud, edges, &given, options.edge_angle, max_error);
-    let CloudDiscs { left_out, discs } = cloud_discs(cloud, options.normals.into(), lines)?;
+    let lines = cloud_lines(edges, &given, options.edge_angle, max_error);
+    let CloudDiscs { left_out, discs } =
+        cloud_discs(cloud, options.normals.into(), lines, noise(&cloud.positions))?;
     let outliers = left_out.len();
     let input = if outliers > 0 { Cow::Owned(Input::Cloud(cloud.without(&left_out))) } else { whole };
     Ok(Kept { input, outliers, discs })

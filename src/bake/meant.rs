@@ -48,6 +48,17 @@ pub struct Meant<'a> {
     pub made: Made,
 }
 
+impl Meant<'_> {
+    /// Standard deviation of the points of what is baked from their surface, model units, as [`Meant::noise`].
+    #[must_use]
+    pub fn noise_left(&self) -> Option<f64> {
+        match &self.made {
+            Made::Quiet(quiet) => quiet.left,
+            Made::Itself | Made::Smooth(_) => self.noise,
+        }
+    }
+}
+
 /// What was made of an input.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Made {

@@ -294,7 +294,7 @@ mod tests {
         let line = [DVec3::new(0.0, -1.0, 0.0), DVec3::new(0.0, 1.0, 0.0)];
         let cloud = Cloud { positions: points.clone(), ..Cloud::default() };
         let lines = [line.to_vec()];
-        let discs = cloud_discs(&cloud, NormalSource::Auto, Lines::Given(&lines)).unwrap().discs;
+        let discs = cloud_discs(&cloud, NormalSource::Auto, Lines::Given(&lines), None).unwrap().discs;
         let fit = CloudFit::new(&points, &discs).unwrap();
         for n in -10..10 {
             let y = 0.07 * f64::from(n);

@@ -40,7 +40,7 @@ pub(super) fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
 
 /// The surface that a cloud tells of, without lines and without points that belong to none.
 pub(super) fn discs(cloud: &Cloud) -> Discs {
-    let found = cloud_discs(cloud, NormalSource::Auto, Lines::Given(&[])).unwrap();
+    let found = cloud_discs(cloud, NormalSource::Auto, Lines::Given(&[]), None).unwrap();
     assert_eq!(found.left_out.len(), 0);
     found.discs
 }

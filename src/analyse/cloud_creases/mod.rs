@@ -38,8 +38,6 @@ use samples::Points;
 pub struct Sought {
     /// The angle by which the surface turns, degrees.
     pub degrees: f64,
-    /// Standard deviation of the points from their surface, model units.
-    pub noise: f64,
     /// Lines shorter than this, taken together with all that they meet, are left out; model units.
     pub shortest: f64,
 }
@@ -55,14 +53,17 @@ const LENGTHS: [f64; 3] = [0.5, 3.0, 5.0];
 /// Lines along which the surface of a cloud is creased, model units; a closed one repeats its first
 /// place at the end.
 ///
+/// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
+/// none, and have no creases.
+///
 /// # Errors
 /// [`crate::Error::Internal`] should the neighbour search not take the points.
-pub fn cloud_creases(cloud: &Cloud, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
+pub fn cloud_creases(cloud: &Cloud, sought: &Sought, noise: Option<f64>) -> Result<Vec<Vec<DVec3>>> {
     let positions = distinct(cloud).positions;
     let search = Search::new(&positions)?;
     let nearest = search.nearest();
     let spacing = spacing(&positions, &nearest);
-    found(&positions, &search, &nearest, &spacing, sought)
+    found(&positions, &search, &nearest, &spacing, sought, noise)
 }
 
 /// As [`cloud_creases`], of distinct points along the Morton curve whose neighbours are known.
@@ -75,9 +76,11 @@ pub fn found(
     nearest: &Nearest,
     spacing: &[f32],
     sought: &Sought,
+    noise: Option<f64>,
 ) -> Result<Vec<Vec<DVec3>>> {
     let cosine = |degrees: f64| libm::cos(degrees.to_radians());
-    let points = Points { positions, search, nearest, spacing, noise: sought.noise };
+    let Some(noise) = noise else { return Ok(Vec::new()) };
+    let points = Points { positions, search, nearest, spacing, noise };
     let samples = ridge::ridge(points.samples(cosine(WEAK_SHARE * sought.degrees)))?;
     let sharp = cosine(sought.degrees);
     let mut lines: Vec<Line> =

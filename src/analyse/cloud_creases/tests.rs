@@ -72,7 +72,7 @@ fn roof(degrees: f64) -> Vec<Vec3> {
 }
 
 fn creases(positions: Vec<Vec3>, noise: f64) -> Vec<Vec<DVec3>> {
-    cloud_creases(&cloud(positions), &Sought { degrees: 40.0, noise, shortest: 0.02 }).unwrap()
+    cloud_creases(&cloud(positions), &Sought { degrees: 40.0, shortest: 0.02 }, Some(noise)).unwrap()
 }
 
 /// Distances of places on some lines from others, evenly along each segment.
