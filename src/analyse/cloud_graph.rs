@@ -49,7 +49,7 @@ pub struct Sites<'a> {
     pub spacing: &'a [f32],
     /// The nearest others of each.
     pub nearest: &'a Nearest,
-    /// Standard deviation of the points from their surface, model units.
+    /// Standard deviation of the points from their surface, model units; 0 where they show none.
     pub noise: f64,
 }
 
