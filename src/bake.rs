@@ -338,7 +338,9 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             let lines = cloud_lines(&meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
             let CloudSurface { surface, left_out, edges, open_places, matched } =
-                cloud_surface(cloud, options.normals.into(), lines, meant.noise_left(), Some(reach))?;
+                cloud_surface(cloud, options.normals.into(), lines, meant.noise, Some(reach))?;
+            // Creases found before the cloud was smoothed are not the user's.
+            let matched = matched.filter(|_| matches!(options.edges, Edges::Given(_)));
             let features = Found { feature_edges: edges, matched };
             Ok(Analysed { surface, marked: None, features, left_out, open_places })
         }
@@ -414,6 +416,12 @@ pub fn feature_lines(
 #[must_use]
 pub fn model_lines(lines: &Polylines, frame: &Frame) -> Vec<Vec<DVec3>> {
     lines.lines.iter().map(|line| line.iter().map(|&point| frame.to_model(point)).collect()).collect()
+}
+
+/// Lines of model units in input units.
+fn input_lines(lines: &[impl AsRef<[DVec3]>], frame: &Frame) -> Polylines {
+    let to_input = |line: &[DVec3]| line.iter().map(|&place| frame.to_input(place)).collect();
+    Polylines { lines: lines.iter().map(|line| to_input(line.as_ref())).collect() }
 }
 
 /// The segments of lines, in model units.

@@ -1,21 +1,20 @@
-//! From a point cloud to its surface: sort and merge, find neighbours, give normals, cut
-//! along feature lines, given or found, join.
+//! From a point cloud to its surface: tell its points apart along feature lines, join them, leave out
+//! outliers.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cloud_assembly::Assembly;
-use super::cloud_creases::{Sought, found};
 use super::cloud_graph::{Joined, Sites};
-use super::cloud_normals::{NormalSource, Normals, normals, parted};
-use super::distinct::{Distinct, distinct};
+use super::cloud_normals::{NormalSource, Normals};
+use super::distinct::Distinct;
 use super::given_lines::Matched;
 use super::line_cut::LineCut;
-use super::line_network::Network;
-use super::nearest::{Search, spacing};
 pub use super::open_places::OpenPlace;
 use super::open_places::open_places;
 use super::outliers::{Strewn, outliers};
+pub use super::sided::Lines;
+use super::sided::Sided;
 use super::surface::{NONE, Surface};
 use super::thin::{Reach, Sheet, owners};
 use crate::error::Result;
@@ -35,15 +34,6 @@ pub struct CloudSurface {
     pub open_places: Vec<OpenPlace>,
     /// What became of the lines, if any were given; `edges` counts their samples' segments.
     pub matched: Option<Matched>,
-}
-
-/// Where the feature lines of a cloud come from.
-#[derive(Clone, Copy, Debug)]
-pub enum Lines<'a> {
-    /// Given, model units; perhaps none.
-    Given(&'a [Vec<DVec3>]),
-    /// Its creases, so far as they are these.
-    Found(Sought),
 }
 
 /// What a cloud's surface is, as far as each of its points tells.
@@ -125,44 +115,25 @@ pub fn cloud_discs(
 
 impl Laid {
     fn of(cloud: &Cloud, source: NormalSource, lines: Lines<'_>, noise: Option<f64>) -> Result<Self> {
-        let points = distinct(cloud);
-        let search = Search::new(&points.positions)?;
-        let nearest = search.nearest();
-        let spacing = spacing(&points.positions, &nearest);
-        let unsided = Sites {
-            positions: &points.positions,
-            normals: &[],
-            spacing: &spacing,
-            nearest: &nearest,
-            noise: noise.unwrap_or_default(),
-        };
-        let mut normals = normals(&points, &nearest, source)?;
-        let resampled = |lines: &[_]| Network::new(lines, &search, &points.positions, &spacing);
-        let mut network = match lines {
-            Lines::Given(lines) => resampled(lines),
-            Lines::Found(sought) => {
-                resampled(&found(&points.positions, &search, &nearest, &spacing, &sought, noise)?)
-            }
-        };
-        drop(search);
-        let lost = std::mem::take(&mut network.far);
-        let cut = (!network.segments.is_empty()).then(|| cut(network, &points, &unsided, &mut normals));
-        let sites = Sites { normals: &normals.normals, ..unsided };
-        let joined = joined(&sites, cut.as_ref());
-        let joins = cut.as_ref().map(|cut| cut.joins(&sites)).unwrap_or_default();
-        let ends = cut.as_ref().map(|cut| cut.ends(&sites, &joined)).unwrap_or_default();
+        let sided = Sided::of(cloud, source, lines, noise)?;
+        let (sites, cut) = (sided.sites(), sided.cut.as_ref());
+        let joined = joined(&sites, cut);
+        let joins = cut.map(|cut| cut.joins(&sites)).unwrap_or_default();
+        let ends = cut.map(|cut| cut.ends(&sites, &joined)).unwrap_or_default();
         let mut on_line = vec![false; joined.len()];
         for &(_, point) in &joins {
             on_line[point as usize] = true;
         }
         let strewn = Strewn {
-            positions: &points.positions,
-            nearest: &nearest,
-            spacing: &spacing,
+            positions: &sided.points.positions,
+            nearest: &sided.nearest,
+            spacing: &sided.spacing,
             joined: &joined,
             on_line: &on_line,
         };
         let outlier = outliers(&strewn);
+        // Their neighbours are no longer needed.
+        let Sided { points, normals, cut, lost, .. } = sided;
         Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, lost })
     }
 
@@ -219,20 +190,6 @@ fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
         joined.margin = joined.margin.max(cut.reach(sites, point));
     }
     joined
-}
-
-/// Cuts the cloud along a network; estimated normals beside it are estimated again. The sites' normals are
-/// those found.
-fn cut(network: Network, points: &Distinct, sites: &Sites<'_>, found: &mut Normals) -> LineCut {
-    let sites = Sites { normals: &found.normals, ..*sites };
-    let cut = LineCut::new(network, &sites);
-    if found.estimated {
-        let mut again = found.normals.clone();
-        parted(points, sites.nearest, &|a, b| cut.parts(&sites, a, b), &mut again);
-        let mended = |(point, normal): (usize, &Vec3)| cut.mended(&sites, point as u32, *normal);
-        found.normals = again.par_iter().enumerate().map(mended).collect();
-    }
-    cut
 }
 
 fn matched(lines: &[Vec<DVec3>], edges: usize, matched_length: f64, lost: Vec<u32>) -> Matched {

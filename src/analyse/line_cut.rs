@@ -176,6 +176,12 @@ impl LineCut {
         Some(if none { std::f64::consts::TAU } else { (-left).rem_euclid(std::f64::consts::TAU) })
     }
 
+    /// Whether a point of the cloud lies beside a line.
+    #[must_use]
+    pub fn is_beside(&self, point: u32) -> bool {
+        self.sheets.beside[point as usize].is_some()
+    }
+
     /// Whether the straight way between two points of the cloud crosses from sheet to sheet.
     #[must_use]
     pub fn parts(&self, sites: &Sites, a: u32, b: u32) -> bool {

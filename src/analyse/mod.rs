@@ -2,6 +2,7 @@
 //!
 //! Both kinds of input end as one [`surface::Surface`], so that nothing below asks which it was.
 
+pub mod around;
 mod back_to_back;
 mod bends;
 mod blocks;
@@ -34,6 +35,7 @@ pub(crate) mod planted;
 pub mod refine;
 pub mod segment_grid;
 pub mod sets;
+pub mod sided;
 pub mod sides;
 pub mod smooth;
 pub mod smoothed;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::options::{Edges, Options};
-use super::{feature_lines, model_error};
+use super::{feature_lines, input_lines, model_error};
 use crate::error::Result;
 use crate::ingest::Input;
 use crate::ingest::chain::chain;
@@ -29,8 +29,7 @@ pub fn found_lines(input: &Input, options: &Options) -> Result<Polylines> {
         Input::Mesh(_) => cornered(&joined(&found)).iter().map(|line| straightened(line)).collect(),
         Input::Cloud(_) => joined(&found),
     };
-    let to_input = |line: Vec<DVec3>| line.into_iter().map(|place| frame.to_input(place)).collect();
-    Ok(Polylines { lines: lines.into_iter().map(to_input).collect() })
+    Ok(input_lines(&lines, &frame))
 }
 
 /// Segments joined where exactly two meet.

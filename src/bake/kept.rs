@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use super::noise::noise;
 use super::options::{Edges, Options};
 use super::{cloud_lines, given_lines};
 use crate::analyse::cloud_surface::{CloudDiscs, cloud_discs};
@@ -22,22 +21,28 @@ pub struct Kept<'a> {
 }
 
 /// What a bake keeps of an input, or of what stands for that, with such edges and options and under this
-/// bound in model units. Of the options only the edges' angle and the normals matter.
+/// bound in model units. Of the options only the edges' angle and the normals matter; `noise` is that of the
+/// input's points, as [`Meant::noise`](super::Meant::noise).
 ///
 /// The outliers are found from the cloud itself, as by [`bake`](super::bake): with the same options they are
 /// the same points.
 ///
 /// # Errors
 /// Those of [`cloud_discs`].
-pub fn kept<'a>(input: &'a Input, edges: &Edges, options: &Options, max_error: f64) -> Result<Kept<'a>> {
+pub fn kept<'a>(
+    input: &'a Input,
+    edges: &Edges,
+    noise: Option<f64>,
+    options: &Options,
+    max_error: f64,
+) -> Result<Kept<'a>> {
     let whole = Cow::Borrowed(input);
     let Input::Cloud(cloud) = input else {
         return Ok(Kept { input: whole, outliers: 0, discs: Discs::default() });
     };
     let given = given_lines(edges, &cloud.frame);
     let lines = cloud_lines(edges, &given, options.edge_angle, max_error);
-    let CloudDiscs { left_out, discs } =
-        cloud_discs(cloud, options.normals.into(), lines, noise(&cloud.positions))?;
+    let CloudDiscs { left_out, discs } = cloud_discs(cloud, options.normals.into(), lines, noise)?;
     let outliers = left_out.len();
     let input = if outliers > 0 { Cow::Owned(Input::Cloud(cloud.without(&left_out))) } else { whole };
     Ok(Kept { input, outliers, discs })

@@ -7,15 +7,15 @@ use std::borrow::Cow;
 use super::noise::noise;
 use super::options::{Edges, Meaning, Options};
 use super::quiet::{Quieted, is_loud, is_noisy, least_bound, quieted};
-use super::{MOST_PIECES, diagonal, features, piece_length};
+use super::{MOST_PIECES, cloud_lines, diagonal, features, given_lines, input_lines, piece_length};
 use crate::analyse::mesh_surface::Found;
+use crate::analyse::sided::Sided;
 use crate::analyse::smooth::Fineness;
 use crate::analyse::smoothed::{Smoothed, Smoothing, smoothed};
 use crate::error::{Error, Result};
 use crate::ingest::Input;
 use crate::model::cloud::Cloud;
 use crate::model::mesh::Mesh;
-use crate::model::polyline::Polylines;
 
 /// Facets of a smooth surface lie within this share of the error bound of it.
 const SMOOTH_SHARE: f64 = 0.05;
@@ -46,17 +46,6 @@ pub struct Meant<'a> {
     pub noise: Option<f64>,
     /// What was done.
     pub made: Made,
-}
-
-impl Meant<'_> {
-    /// Standard deviation of the points of what is baked from their surface, model units, as [`Meant::noise`].
-    #[must_use]
-    pub fn noise_left(&self) -> Option<f64> {
-        match &self.made {
-            Made::Quiet(quiet) => quiet.left,
-            Made::Itself | Made::Smooth(_) => self.noise,
-        }
-    }
 }
 
 /// What was made of an input.
@@ -125,11 +114,7 @@ fn of_mesh<'a>(input: &'a Input, mesh: &Mesh, options: &'a Options, max_error: f
         return itself(input, options);
     };
     let edges = match &options.edges {
-        Edges::Given(_) => {
-            let frame = mesh.vertices.frame;
-            let lines = lines.iter().map(|line| line.map(|place| frame.to_input(place)).to_vec());
-            Cow::Owned(Edges::Given(Polylines { lines: lines.collect() }))
-        }
+        Edges::Given(_) => Cow::Owned(Edges::Given(input_lines(&lines, &mesh.vertices.frame))),
         kept => Cow::Borrowed(kept),
     };
     Meant { input: Cow::Owned(Input::Mesh(mesh)), edges, noise: None, made: Made::Smooth(found) }
@@ -143,9 +128,14 @@ fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error
     let wanted =
         |noise: &f64| options.denoise && max_error >= least_bound(*noise) && is_noisy(*noise, max_error);
     let Some(noise) = noise.filter(wanted) else { return Ok(itself) };
-    let Quieted { cloud, moved_rms, moved_max } = quieted(cloud, noise, max_error)?;
-    let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&cloud.positions) });
-    Ok(Meant { input: Cow::Owned(Input::Cloud(cloud)), made, ..itself })
+    let given = given_lines(&options.edges, &cloud.frame);
+    let lines = cloud_lines(&options.edges, &given, options.edge_angle, max_error);
+    let sided = Sided::of(cloud, options.normals.into(), lines, Some(noise))?;
+    let Quieted { cloud: smoothed, moved_rms, moved_max } = quieted(cloud, &sided, noise, max_error)?;
+    let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&smoothed.positions) });
+    // Smoothed on either side of its creases, a cloud shows others where these were lost in the noise.
+    let edges = Cow::Owned(Edges::Given(input_lines(&sided.lines, &cloud.frame)));
+    Ok(Meant { input: Cow::Owned(Input::Cloud(smoothed)), edges, made, ..itself })
 }
 
 /// Refuses a cloud whose noise, or what smoothing leaves of it, an error bound (model units) is below.

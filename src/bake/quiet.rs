@@ -4,8 +4,9 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::patch::Patch;
+use crate::analyse::around::{Around, Seen};
 use crate::analyse::canonical::order;
-use crate::analyse::nearest::Search;
+use crate::analyse::sided::Sided;
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 
@@ -21,6 +22,9 @@ const LOUDEST: f64 = 1.5;
 
 /// The fewest and the most points that one is smoothed with.
 const SMOOTHED_WITH: [usize; 2] = [32, 768];
+
+/// On narrow faces there are fewer, and no fewer than this show how a quadric goes on.
+const FEWEST: usize = 16;
 
 /// A point that would move by more than this many standard deviations of the noise is none of it and
 /// stays where it is: an outlier, or too far from its neighbours to be told.
@@ -60,38 +64,23 @@ pub struct Quieted {
     pub moved_max: f64,
 }
 
-/// A cloud without its noise, as far as an error bound asks for that (model units).
+/// A cloud without its noise, as far as an error bound asks for that (model units); edges stay sharp along
+/// the lines that its points are told apart by.
 ///
 /// After Levin 1998 ("The approximation power of moving least-squares"), one step and with weights
-/// that are all the same.
+/// that are all the same, of the points on one side of the lines alone.
 ///
 /// # Errors
 /// [`crate::Error::Internal`] should the neighbour search not take the points.
-pub fn quieted(cloud: &Cloud, noise: f64, max_error: f64) -> Result<Quieted> {
-    let ratio = noise / (QUIET * max_error);
-    let count = ((LEVERAGE * ratio * ratio).ceil() as usize).clamp(SMOOTHED_WITH[0], SMOOTHED_WITH[1]);
-    // Along the curve, so that the order in the file does not matter, even between points equally far.
-    let order = order(&cloud.positions);
-    let positions: Vec<Vec3> = order.iter().map(|&n| cloud.positions[n as usize]).collect();
-    let search = Search::new(&positions)?;
-    let moved: Vec<(DVec3, DVec3)> = (0_u32..positions.len() as u32)
-        .into_par_iter()
-        .map(|n| {
-            let point = positions[n as usize];
-            let others = search.around(point, count).into_iter().filter(|&other| other != n);
-            let near = others.map(|other| positions[other as usize]);
-            let patch: Vec<Vec3> = std::iter::once(point).chain(near).collect();
-            Patch::of(&patch).foot(point)
-        })
-        .collect();
+pub fn quieted(cloud: &Cloud, sided: &Sided, noise: f64, max_error: f64) -> Result<Quieted> {
+    let moved = moved(sided, noise, max_error)?;
     let mut quiet = Quieted { cloud: cloud.clone(), moved_rms: 0.0, moved_max: 0.0 };
     let mut squares = 0.0;
-    for (&n, &(place, normal)) in order.iter().zip(&moved) {
+    // Along the curve, so that the order in the file does not matter.
+    for n in order(&cloud.positions) {
         let n = n as usize;
+        let Some((place, normal)) = moved[sided.points.place[n] as usize] else { continue };
         let way = cloud.positions[n].as_dvec3().distance(place);
-        if way > FARTHEST * noise {
-            continue;
-        }
         squares += way * way;
         quiet.moved_max = quiet.moved_max.max(way);
         quiet.cloud.positions[n] = place.as_vec3();
@@ -100,8 +89,27 @@ pub fn quieted(cloud: &Cloud, noise: f64, max_error: f64) -> Result<Quieted> {
             *old = (side * normal).as_vec3();
         }
     }
-    quiet.moved_rms = (squares / order.len().max(1) as f64).sqrt();
+    quiet.moved_rms = (squares / cloud.positions.len().max(1) as f64).sqrt();
     Ok(quiet)
+}
+
+/// Where the distinct points of a cloud are moved to, with the normals there; `None` where they stay.
+fn moved(sided: &Sided, noise: f64, max_error: f64) -> Result<Vec<Option<(DVec3, DVec3)>>> {
+    let ratio = noise / (QUIET * max_error);
+    let count = ((LEVERAGE * ratio * ratio).ceil() as usize).clamp(SMOOTHED_WITH[0], SMOOTHED_WITH[1]);
+    let positions = &sided.points.positions;
+    let around = Around::new(sided)?;
+    let foot = |seen: &mut Seen, n: u32| {
+        let near = around.of(n, count, seen);
+        let patch: Vec<Vec3> = near.into_iter().map(|other| positions[other as usize]).collect();
+        if patch.len() < FEWEST {
+            return None;
+        }
+        let here = positions[n as usize];
+        let (place, normal) = Patch::of(&patch).foot(here);
+        (here.as_dvec3().distance(place) <= FARTHEST * noise).then_some((place, normal))
+    };
+    Ok((0..positions.len() as u32).into_par_iter().map_init(Seen::default, foot).collect())
 }
 
 #[cfg(test)]
@@ -109,6 +117,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::sided::Lines;
     use crate::bake::noise::noise;
     use crate::bake::scattered::sphere;
 
@@ -117,7 +127,9 @@ mod tests {
         let mut cloud = sphere(20_000, 0.01);
         cloud.positions[7] = Vec3::new(0.0, 0.0, 0.95);
         let bound = 0.01;
-        let quiet = quieted(&cloud, noise(&cloud.positions).unwrap(), bound).unwrap();
+        let noise = noise(&cloud.positions).unwrap();
+        let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(&[]), Some(noise)).unwrap();
+        let quiet = quieted(&cloud, &sided, noise, bound).unwrap();
         assert_eq!(quiet.cloud.positions[7], cloud.positions[7]);
         let rest = quiet.cloud.positions.iter().enumerate().filter(|&(n, _)| n != 7);
         let off: Vec<f64> = rest.map(|(_, p)| p.as_dvec3().length() - 0.8).collect();

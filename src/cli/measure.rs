@@ -83,7 +83,7 @@ impl Arguments {
         let lines = feature_lines(&meant.input, &meant.edges, self.edge_angle, max_error)?;
         let lines = lines.as_ref().map(|lines| align::lines(lines, &frame, &asset.frame));
         progress.stage("reference");
-        let kept = kept(&meant.input, &meant.edges, &options, max_error)?;
+        let kept = kept(&meant.input, &meant.edges, meant.noise, &options, max_error)?;
         let aligned = align::bring(surface(&kept), &asset);
         let reference = Reference::standing_for(aligned.model(), asset.diagonal)?;
         let reference = Reference { outliers: kept.outliers, ..reference };

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
+use crate::bake::noise::noise;
 use crate::bake::{Edges, Kept, Options, Silent, feature_lines, kept, model_error};
 use crate::deliver::{deliver, model, surface};
 use crate::error::{Error, Result};
@@ -42,11 +43,11 @@ pub(super) struct Subject<'a> {
 /// Those of [`kept`], and of [`model_error`] for a cloud.
 pub(super) fn without_outliers<'a>(input: &'a Input, edges: &Edges) -> Result<Kept<'a>> {
     let options = Options::default();
-    let max_error = match input {
-        Input::Mesh(_) => 0.0,
-        Input::Cloud(_) => model_error(&options, input)?,
+    let (noise, max_error) = match input {
+        Input::Mesh(_) => (None, 0.0),
+        Input::Cloud(cloud) => (noise(&cloud.positions), model_error(&options, input)?),
     };
-    kept(input, edges, &options, max_error)
+    kept(input, edges, noise, &options, max_error)
 }
 
 impl<'a> Subject<'a> {

@@ -36,7 +36,7 @@ fn baked(input: &Input) -> Delivery {
 fn measured(asset: &Asset, made: &Delivery, input: &Input) -> Measures {
     let (options, max_error) = (options(MaxError::Relative(1e-3)), asset.max_error);
     let meant = meant(input, &options, max_error).unwrap();
-    let kept = kept(&meant.input, &meant.edges, &options, max_error).unwrap();
+    let kept = kept(&meant.input, &meant.edges, meant.noise, &options, max_error).unwrap();
     let reference = Reference::standing_for(deliver::surface(&kept), asset.diagonal).unwrap();
     measure(&Subject { bytes: &made.bytes, asset, against: &reference, lines: None }).unwrap()
 }

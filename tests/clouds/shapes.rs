@@ -162,7 +162,7 @@ fn what_is_measured_leaves_out_what_the_bake_did_and_keeps_the_bound() {
     let made = deliver(&input, &options, &mut Silent).unwrap();
     let max_error = made.asset.max_error;
     let meant = meant(&input, &options, max_error).unwrap();
-    let kept = kept(&meant.input, &meant.edges, &options, max_error).unwrap();
+    let kept = kept(&meant.input, &meant.edges, meant.noise, &options, max_error).unwrap();
     assert_eq!(kept.outliers, made.baked.left_out.len());
     assert_eq!(kept.input.cloud().positions, input.cloud().without(&made.baked.left_out).positions);
     for &stray in &made.baked.left_out {

@@ -1,5 +1,7 @@
 //! Two half planes that meet in a line, fitted to the points around a place.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::plane::{Moments, Plane};
@@ -16,6 +18,9 @@ const ROUNDS: [f64; 4] = [4.0, 2.0, 1.0, 1.0];
 
 /// Planes that meet at a smaller sine than this (15°) give no line that could be placed.
 const FLAT: f64 = 0.26;
+
+/// Points beside the line lie within this share of the neighbourhood's radius of it.
+const BESIDE: f64 = 0.2;
 
 /// Two half planes, in the unit and about the origin of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +87,22 @@ impl Hinge {
         let way = p - self.foot;
         let side = usize::from(way.dot(self.inward[1] - self.inward[0]) > 0.0);
         (side, way.dot(self.normals[side]).abs())
+    }
+
+    /// How far the points beside the line lie within it, where the half planes face each other, on the mean: in
+    /// its standard deviation as the points scatter.
+    pub(super) fn rounded(&self, points: &[DVec3], cutoff: f64) -> f64 {
+        let radius = (points.len() as f64 / PI).sqrt();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for &p in points {
+            let (side, distance) = self.place(p);
+            let (way, normal) = (p - self.foot, self.normals[side]);
+            if distance <= cutoff && way.dot(self.inward[side]) < BESIDE * radius {
+                sum += way.dot(normal) * normal.dot(self.inward[1 - side]).signum();
+                count += 1.0;
+            }
+        }
+        if count > 0.0 { sum / (count * self.scatter).sqrt() } else { 0.0 }
     }
 
     fn judged(mut self, points: &[DVec3], cutoff: f64) -> Self {

@@ -21,6 +21,9 @@ pub(super) struct Sample {
     pub(super) between: DVec3,
     /// Cosine of the angle by which the surface turns.
     pub(super) turn: f64,
+    /// As [`Hinge::rounded`], in a neighbourhood as large as noise calls for; 0 in one that is no larger than
+    /// it is without, in which curved sides may count for more than the noise.
+    pub(super) rounded: f64,
     /// Radius of the neighbourhood that showed it.
     pub(super) size: f64,
 }
@@ -176,6 +179,7 @@ impl Points<'_> {
             along: hinge.along,
             between: (hinge.inward[0] + hinge.inward[1]).normalize_or(normal),
             turn: hinge.turn(),
+            rounded: if points.len() > FEWEST as usize { hinge.rounded(&points, cutoff) } else { 0.0 },
             size: radius * spacing,
         })
     }

@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::*;
@@ -37,7 +39,7 @@ fn cube_edges() -> Vec<Vec<DVec3>> {
 /// Points of a cylinder of radius 0.4 and height 0.8 with flat ends, `each` on either end, strewn.
 fn cylinder(each: u64) -> Vec<Vec3> {
     let place = |n: u64| {
-        let (sin, cos) = libm::sincos(std::f64::consts::PI * random(2 * n));
+        let (sin, cos) = libm::sincos(PI * random(2 * n));
         let (side, height) = (0.4 * DVec3::new(cos, sin, 0.0), 0.4 * random(2 * n + 1));
         match n % 6 {
             0 | 1 => {
@@ -54,7 +56,7 @@ fn cylinder(each: u64) -> Vec<Vec3> {
 fn sphere(count: u64, scatter: f64) -> Vec<Vec3> {
     let place = |n: u64| {
         let z = random(2 * n);
-        let (sin, cos) = libm::sincos(std::f64::consts::PI * random(2 * n + 1));
+        let (sin, cos) = libm::sincos(PI * random(2 * n + 1));
         let across = libm::sqrt(1.0 - z * z);
         0.8 * DVec3::new(across * cos, across * sin, z)
     };
@@ -111,7 +113,7 @@ fn a_cylinder_has_two_circles() {
     }
     let length: f64 =
         found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
-    assert!((length / (1.6 * std::f64::consts::PI) - 1.0).abs() < 0.05, "{length}");
+    assert!((length / (1.6 * PI) - 1.0).abs() < 0.05, "{length}");
 }
 
 #[test]
@@ -134,6 +136,32 @@ fn the_angle_decides() {
         assert_eq!(found.is_empty(), lines == 0, "{degrees}: {found:?}");
         let axis = [vec![DVec3::X, -DVec3::X]];
         assert!(apart(&found, &axis) < 0.01, "{degrees}: {}", apart(&found, &axis));
+    }
+}
+
+/// A floor and a wall that meet along the x axis, with a fillet of this radius; points lie 0.02 apart and
+/// scatter by half of that.
+fn corner(radius: f64) -> Vec<Vec3> {
+    let arc = std::f64::consts::FRAC_PI_2 * radius;
+    let place = |n: u64| {
+        let (x, way) = (random(2 * n), random(2 * n + 1));
+        let angle = (way / radius.max(f64::EPSILON)).clamp(-0.25 * PI, 0.25 * PI);
+        let (sin, cos) = libm::sincos(angle);
+        let beyond = (way.abs() - 0.5 * arc).max(0.0).copysign(way);
+        let [y, z] = [radius * sin + beyond * cos, radius * (1.0 - cos) + beyond * sin];
+        DVec3::new(x, y, z)
+    };
+    (0..10_000).map(|n| strayed(place(n), 0.01, n)).collect()
+}
+
+#[test]
+fn a_bend_that_shows_in_the_noise_is_no_crease() {
+    let axis = [vec![DVec3::X, -DVec3::X]];
+    let sharp = creases(corner(0.0), 0.01);
+    assert!(apart(&sharp, &axis) < 0.02, "{}", apart(&sharp, &axis));
+    assert!(apart(&axis, &sharp) < 0.1, "{}", apart(&axis, &sharp));
+    for radius in [0.06, 0.08, 0.12] {
+        assert_eq!(creases(corner(radius), 0.01), Vec::<Vec<DVec3>>::new(), "{radius}");
     }
 }
 

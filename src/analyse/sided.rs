@@ -1,0 +1,97 @@
+//! The points of a cloud told apart by the feature lines between them: neighbours, spacings, normals, and
+//! the sides on which they lie of lines, given or found.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::cloud_creases::{Sought, found};
+use super::cloud_graph::Sites;
+use super::cloud_normals::{NormalSource, Normals, normals, parted};
+use super::distinct::{Distinct, distinct};
+use super::line_cut::LineCut;
+use super::line_network::Network;
+use super::nearest::{Nearest, Search, spacing};
+use crate::error::Result;
+use crate::model::cloud::Cloud;
+
+/// Where the feature lines of a cloud come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Lines<'a> {
+    /// Given, model units; perhaps none.
+    Given(&'a [Vec<DVec3>]),
+    /// Its creases, so far as they are these.
+    Found(Sought),
+}
+
+/// A cloud's points, told apart by feature lines.
+#[derive(Clone, Debug)]
+pub struct Sided {
+    /// The points.
+    pub points: Distinct,
+    /// The nearest others of each, on whichever side.
+    pub nearest: Nearest,
+    /// Local spacings, model units.
+    pub spacing: Vec<f32>,
+    /// Unit normals; those estimated are of one side.
+    pub normals: Normals,
+    /// The feature lines, model units.
+    pub lines: Vec<Vec<DVec3>>,
+    /// The sides, where a line is near the cloud.
+    pub cut: Option<LineCut>,
+    /// Of the lines, those far from the cloud.
+    pub lost: Vec<u32>,
+    noise: f64,
+}
+
+impl Sided {
+    /// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
+    /// none.
+    ///
+    /// # Errors
+    /// [`crate::Error::Usage`] where normals are to be kept and none is sound.
+    pub fn of(cloud: &Cloud, source: NormalSource, lines: Lines<'_>, noise: Option<f64>) -> Result<Self> {
+        let points = distinct(cloud);
+        let search = Search::new(&points.positions)?;
+        let nearest = search.nearest();
+        let spacing = spacing(&points.positions, &nearest);
+        let normals = normals(&points, &nearest, source)?;
+        let lines = match lines {
+            Lines::Given(lines) => lines.to_vec(),
+            Lines::Found(sought) => found(&points.positions, &search, &nearest, &spacing, &sought, noise)?,
+        };
+        let mut network = Network::new(&lines, &search, &points.positions, &spacing);
+        drop(search);
+        let lost = std::mem::take(&mut network.far);
+        let noise = noise.unwrap_or_default();
+        let mut sided = Self { points, nearest, spacing, normals, lines, cut: None, lost, noise };
+        if !network.segments.is_empty() {
+            sided.part(network);
+        }
+        Ok(sided)
+    }
+
+    /// Tells the points apart along a network; estimated normals beside it are estimated again.
+    fn part(&mut self, network: Network) {
+        let sites = self.sites();
+        let cut = LineCut::new(network, &sites);
+        if self.normals.estimated {
+            let mut again = self.normals.normals.clone();
+            parted(&self.points, &self.nearest, &|a, b| cut.parts(&sites, a, b), &mut again);
+            let mended = |(point, normal): (usize, &Vec3)| cut.mended(&sites, point as u32, *normal);
+            self.normals.normals = again.par_iter().enumerate().map(mended).collect();
+        }
+        self.cut = Some(cut);
+    }
+
+    /// The points as the graph sees them.
+    #[must_use]
+    pub fn sites(&self) -> Sites<'_> {
+        Sites {
+            positions: &self.points.positions,
+            normals: &self.normals.normals,
+            spacing: &self.spacing,
+            nearest: &self.nearest,
+            noise: self.noise,
+        }
+    }
+}
