@@ -3,6 +3,8 @@
 //! Around each segment of a line the points fall, seen along it, into clusters of direction:
 //! one for each sheet of the surface that ends there.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -39,6 +41,16 @@ const ALIGNED: f64 = 0.866;
 
 /// Directions farther apart than this (25°) belong to different sheets.
 const SEPARATE: f64 = 0.436;
+
+/// Votes count as of one direction within this (10°).
+const WITHIN: f64 = 0.175;
+
+/// A direction that has less than this share of the votes of one nearby is that of strays. Of two sheets 60°
+/// apart whose votes scatter by 10° the direction between has a twentieth.
+const STRAYS: f64 = 0.25;
+
+/// Directions are nearby within this (45°).
+const NEARBY: f64 = 0.785;
 
 /// Directions spread over more than this (100°) are no sheet but a blob, or a surface that
 /// the line floats above.
@@ -184,8 +196,32 @@ fn sheets(
         })
         .collect();
     votes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let clusters = clusters(&votes);
+    let clusters = clusters(&gathered(&votes));
     clusters.into_iter().filter_map(|points| sheet(network, sites, beside, segment, points)).collect()
+}
+
+/// Of votes sorted by angle those whose way many point: beside them a few are strays of the noise, which would
+/// join two sheets.
+fn gathered(votes: &[(f64, u32)]) -> Vec<(f64, u32)> {
+    let crowd: Vec<usize> = (0..votes.len()).map(|n| around(votes, n, WITHIN).count()).collect();
+    let is_stray = |n: usize| {
+        let most = around(votes, n, NEARBY).map(|other| crowd[other]).max().unwrap_or_default();
+        (crowd[n] as f64) < STRAYS * most as f64
+    };
+    (0..votes.len()).filter(|&n| !is_stray(n)).map(|n| votes[n]).collect()
+}
+
+/// Those of votes sorted by angle that point within `reach` of the way of one, itself among them.
+fn around(votes: &[(f64, u32)], n: usize, reach: f64) -> impl Iterator<Item = usize> + '_ {
+    let count = votes.len();
+    let near = move |&other: &usize| {
+        let apart = (votes[other].0 - votes[n].0).abs();
+        apart.min(TAU - apart) <= reach
+    };
+    let after = (0..count).map(move |step| (n + step) % count).take_while(near);
+    let before = (1..count).map(move |step| (n + count - step) % count).take_while(near);
+    // Where all are near, the walks both ways meet.
+    after.chain(before).take(count)
 }
 
 /// Splits points sorted by angle where two neighbours lie far apart.
@@ -193,7 +229,7 @@ fn clusters(votes: &[(f64, u32)]) -> Vec<Vec<u32>> {
     let count = votes.len();
     let gap = |n: usize| {
         let step = votes[(n + 1) % count].0 - votes[n].0;
-        if n + 1 == count { step + std::f64::consts::TAU } else { step }
+        if n + 1 == count { step + TAU } else { step }
     };
     let breaks: Vec<usize> = (0..count).filter(|&n| gap(n) > SEPARATE).collect();
     let mut found = Vec::new();

@@ -118,6 +118,7 @@ mod tests {
 
     use super::*;
     use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::planted::{normal, random};
     use crate::analyse::sided::Lines;
     use crate::bake::noise::noise;
     use crate::bake::scattered::sphere;
@@ -137,5 +138,29 @@ mod tests {
         assert!(rms < 1.5 * QUIET * bound, "{rms}");
         assert!(off.iter().all(|off| off.abs() < bound));
         assert!((0.8..1.2).contains(&(quiet.moved_rms / 0.01)), "{}", quiet.moved_rms);
+    }
+
+    #[test]
+    fn smoothing_keeps_edges_along_lines() {
+        // A floor and a wall; points lie 0.02 apart and scatter by half of that.
+        let (noise, bound) = (0.01, 0.015);
+        let place = |n: u64| {
+            let (x, way) = (random(2 * n), random(2 * n + 1));
+            let off = DVec3::new(normal(3 * n), normal(3 * n + 1), normal(3 * n + 2));
+            DVec3::new(x, way.max(0.0), (-way).max(0.0)) + noise * off
+        };
+        let positions: Vec<Vec3> = (0..10_000).map(|n| place(n).as_vec3()).collect();
+        let cloud = Cloud { positions, ..Cloud::default() };
+        // How far off both the points beside the edge lie, root mean square.
+        let off = |lines: &[Vec<DVec3>]| {
+            let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(lines), Some(noise)).unwrap();
+            let smoothed = quieted(&cloud, &sided, noise, bound).unwrap().cloud.positions;
+            let beside = |p: &Vec3| p.x.abs() < 0.9 && p.y.max(p.z) < 0.06;
+            let near = cloud.positions.iter().zip(&smoothed).filter(|(place, _)| beside(place));
+            let squares: Vec<f64> = near.map(|(_, p)| f64::from(p.y.abs().min(p.z.abs())).powi(2)).collect();
+            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+        };
+        let (sharp, round) = (off(&[vec![DVec3::NEG_X, DVec3::X]]), off(&[]));
+        assert!(sharp < 0.5 * noise && sharp < 0.7 * round, "{sharp}, and over the edge {round}");
     }
 }

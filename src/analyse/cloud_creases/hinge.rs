@@ -13,8 +13,10 @@ const TURNS: u32 = 6;
 const FOLLOWED: usize = 2;
 
 /// How far points may lie from their half plane to take part in the next fit, in shares of the
-/// cutoff: at first the planes are rough.
-const ROUNDS: [f64; 4] = [4.0, 2.0, 1.0, 1.0];
+/// cutoff: at first the planes are rough. And how far at least from the line, in standard deviations of the
+/// noise: those of one side that stray past the middle between both count for the other, so that the rest
+/// would draw the line out of the edge, by half a spacing where noise is half of one.
+const ROUNDS: [(f64, f64); 4] = [(4.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 2.0)];
 
 /// Planes that meet at a smaller sine than this (15°) give no line that could be placed.
 const FLAT: f64 = 0.26;
@@ -42,12 +44,12 @@ pub(super) struct Hinge {
 }
 
 impl Hinge {
-    /// The hinge of least squares near points, with a cutoff beyond which a point's distance says no
-    /// more; `normal` is that of the plane through all.
+    /// The hinge of least squares near points that scatter by `noise`, with a cutoff beyond which a point's
+    /// distance says no more; `normal` is that of the plane through all.
     ///
     /// The points are divided in two in several ways, of which the best are followed: as in
     /// Lloyd's iteration each point goes to its half plane, and the planes are fitted again.
-    pub(super) fn fit(points: &[DVec3], normal: DVec3, cutoff: f64) -> Option<Self> {
+    pub(super) fn fit(points: &[DVec3], normal: DVec3, cutoff: f64, noise: f64) -> Option<Self> {
         let start = |direction: DVec3| {
             let mut moments = [Moments::default(); 2];
             for &p in points {
@@ -59,7 +61,8 @@ impl Hinge {
         };
         let mut starts: Vec<Self> = directions(normal).into_iter().filter_map(start).collect();
         starts.sort_by(|a, b| a.scatter.total_cmp(&b.scatter));
-        let settled = starts.into_iter().take(FOLLOWED).filter_map(|start| start.settled(points, cutoff));
+        let settled =
+            starts.into_iter().take(FOLLOWED).filter_map(|start| start.settled(points, cutoff, noise));
         settled.min_by(|a, b| a.scatter.total_cmp(&b.scatter))
     }
 
@@ -117,13 +120,14 @@ impl Hinge {
         self
     }
 
-    fn settled(self, points: &[DVec3], cutoff: f64) -> Option<Self> {
+    fn settled(self, points: &[DVec3], cutoff: f64, noise: f64) -> Option<Self> {
         let mut hinge = self;
-        for share in ROUNDS {
+        for (share, clear) in ROUNDS {
             let mut moments = [Moments::default(); 2];
             for &p in points {
                 let (side, distance) = hinge.place(p);
-                if distance <= share * cutoff {
+                let away = (p - hinge.foot).dot(hinge.inward[side]);
+                if distance <= share * cutoff && away >= clear * noise {
                     moments[side] = moments[side].with(p);
                 }
             }

@@ -170,7 +170,9 @@ impl Points<'_> {
         if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
             return None;
         }
-        let hinge = Hinge::fit(&points, normal, cutoff)?;
+        // A neighbourhood no larger than without noise has none of its points to spare.
+        let many = points.len() > FEWEST as usize;
+        let hinge = Hinge::fit(&points, normal, cutoff, if many { noise } else { 0.0 })?;
         let sound =
             is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
         let turned = (FOLDED..turn).contains(&hinge.turn());
@@ -179,7 +181,7 @@ impl Points<'_> {
             along: hinge.along,
             between: (hinge.inward[0] + hinge.inward[1]).normalize_or(normal),
             turn: hinge.turn(),
-            rounded: if points.len() > FEWEST as usize { hinge.rounded(&points, cutoff) } else { 0.0 },
+            rounded: if many { hinge.rounded(&points, cutoff) } else { 0.0 },
             size: radius * spacing,
         })
     }
