@@ -55,8 +55,8 @@ impl<'a> Around<'a> {
         Ok(Self { sided, search, links })
     }
 
-    /// The `count` points nearest to one on its own side, itself first; fewer where
-    /// there are no more that can be reached without a step across a line.
+    /// The `count` points nearest to one on its own side, itself first; fewer where no more can be reached
+    /// without a step across a line.
     #[must_use]
     pub fn of(&self, point: u32, count: usize, seen: &mut Seen) -> Vec<u32> {
         let here = self.sided.points.positions[point as usize];

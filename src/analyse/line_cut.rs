@@ -453,7 +453,7 @@ mod tests {
     #[test]
     fn the_faces_of_a_noisy_cube_are_told_apart() {
         let (exact, normals) = cube(1500);
-        let noise = 0.4 / 1500_f64.sqrt();
+        let noise = 0.6 / 1500_f64.sqrt();
         let stray = |n: u64| noise * normal(n);
         let strayed = |(n, at): (u64, &Vec3)| {
             *at + DVec3::new(stray(3 * n), stray(3 * n + 1), stray(3 * n + 2)).as_vec3()
@@ -468,7 +468,7 @@ mod tests {
         };
         let (told, untold) = (whole(&Sites { noise, ..quiet }), whole(&quiet));
         assert!(
-            told > 0.99 && untold < 0.9,
+            told > 0.99 && untold < 0.5,
             "{told} and, noise unknown, {untold} of the segments have two faces"
         );
     }

@@ -39,7 +39,7 @@ pub struct Meant<'a> {
     /// The input, or what it stands for, in the same frame: a smooth surface may bulge a little
     /// beyond its box.
     pub input: Cow<'a, Input>,
-    /// The feature lines of that.
+    /// The feature lines of that; those of a smoothed cloud are given, as they were or were found before.
     pub edges: Cow<'a, Edges>,
     /// Standard deviation of a cloud's points from their surface, model units; `None` for a mesh, and
     /// for a cloud that shows no surface.
@@ -131,7 +131,7 @@ fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error
     let given = given_lines(&options.edges, &cloud.frame);
     let lines = cloud_lines(&options.edges, &given, options.edge_angle, max_error);
     let sided = Sided::of(cloud, options.normals.into(), lines, Some(noise))?;
-    let Quieted { cloud: smoothed, moved_rms, moved_max } = quieted(cloud, &sided, noise, max_error)?;
+    let Quieted { cloud: smoothed, moved_rms, moved_max } = quieted(cloud, &sided, max_error)?;
     let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&smoothed.positions) });
     // Smoothed on either side of its creases, a cloud shows others where these were lost in the noise.
     let edges = Cow::Owned(Edges::Given(input_lines(&sided.lines, &cloud.frame)));

@@ -72,8 +72,8 @@ pub struct Quieted {
 ///
 /// # Errors
 /// [`crate::Error::Internal`] should the neighbour search not take the points.
-pub fn quieted(cloud: &Cloud, sided: &Sided, noise: f64, max_error: f64) -> Result<Quieted> {
-    let moved = moved(sided, noise, max_error)?;
+pub fn quieted(cloud: &Cloud, sided: &Sided, max_error: f64) -> Result<Quieted> {
+    let moved = moved(sided, max_error)?;
     let mut quiet = Quieted { cloud: cloud.clone(), moved_rms: 0.0, moved_max: 0.0 };
     let mut squares = 0.0;
     // Along the curve, so that the order in the file does not matter.
@@ -94,7 +94,8 @@ pub fn quieted(cloud: &Cloud, sided: &Sided, noise: f64, max_error: f64) -> Resu
 }
 
 /// Where the distinct points of a cloud are moved to, with the normals there; `None` where they stay.
-fn moved(sided: &Sided, noise: f64, max_error: f64) -> Result<Vec<Option<(DVec3, DVec3)>>> {
+fn moved(sided: &Sided, max_error: f64) -> Result<Vec<Option<(DVec3, DVec3)>>> {
+    let noise = sided.sites().noise;
     let ratio = noise / (QUIET * max_error);
     let count = ((LEVERAGE * ratio * ratio).ceil() as usize).clamp(SMOOTHED_WITH[0], SMOOTHED_WITH[1]);
     let positions = &sided.points.positions;
@@ -130,7 +131,7 @@ mod tests {
         let bound = 0.01;
         let noise = noise(&cloud.positions).unwrap();
         let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(&[]), Some(noise)).unwrap();
-        let quiet = quieted(&cloud, &sided, noise, bound).unwrap();
+        let quiet = quieted(&cloud, &sided, bound).unwrap();
         assert_eq!(quiet.cloud.positions[7], cloud.positions[7]);
         let rest = quiet.cloud.positions.iter().enumerate().filter(|&(n, _)| n != 7);
         let off: Vec<f64> = rest.map(|(_, p)| p.as_dvec3().length() - 0.8).collect();
@@ -154,7 +155,7 @@ mod tests {
         // How far off both the points beside the edge lie, root mean square.
         let off = |lines: &[Vec<DVec3>]| {
             let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(lines), Some(noise)).unwrap();
-            let smoothed = quieted(&cloud, &sided, noise, bound).unwrap().cloud.positions;
+            let smoothed = quieted(&cloud, &sided, bound).unwrap().cloud.positions;
             let beside = |p: &Vec3| p.x.abs() < 0.9 && p.y.max(p.z) < 0.06;
             let near = cloud.positions.iter().zip(&smoothed).filter(|(place, _)| beside(place));
             let squares: Vec<f64> = near.map(|(_, p)| f64::from(p.y.abs().min(p.z.abs())).powi(2)).collect();

@@ -1,7 +1,5 @@
 //! Two half planes that meet in a line, fitted to the points around a place.
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 
 use super::plane::{Moments, Plane};
@@ -93,9 +91,8 @@ impl Hinge {
     }
 
     /// How far the points beside the line lie within it, where the half planes face each other, on the mean: in
-    /// its standard deviation as the points scatter.
-    pub(super) fn rounded(&self, points: &[DVec3], cutoff: f64) -> f64 {
-        let radius = (points.len() as f64 / PI).sqrt();
+    /// its standard deviation as the points scatter. `radius` is that of the neighbourhood.
+    pub(super) fn rounded(&self, points: &[DVec3], radius: f64, cutoff: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for &p in points {
             let (side, distance) = self.place(p);

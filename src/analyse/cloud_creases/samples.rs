@@ -181,7 +181,7 @@ impl Points<'_> {
             along: hinge.along,
             between: (hinge.inward[0] + hinge.inward[1]).normalize_or(normal),
             turn: hinge.turn(),
-            rounded: if many { hinge.rounded(&points, cutoff) } else { 0.0 },
+            rounded: if many { hinge.rounded(&points, radius, cutoff) } else { 0.0 },
             size: radius * spacing,
         })
     }
