@@ -406,7 +406,7 @@ pub fn feature_lines(
         }
         (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
         (Input::Cloud(cloud), Edges::Auto) => {
-            cloud_creases(cloud, &sought(edge_angle, max_error), noise(&cloud.positions))?
+            cloud_creases(cloud, &sought(edge_angle, max_error), noise(cloud))?
         }
     };
     Ok((!lines.is_empty()).then_some(lines))

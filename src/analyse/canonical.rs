@@ -40,9 +40,16 @@ pub fn key(p: Vec3) -> (u64, [u32; 3]) {
 /// The indices of positions sorted by [`key`]; equal ones in no order that means anything.
 #[must_use]
 pub fn order(positions: &[Vec3]) -> Vec<u32> {
+    order_along(positions, |p| p)
+}
+
+/// The indices of positions in the order of where they are put along the Morton curve, ties broken
+/// by [`key`].
+#[must_use]
+pub fn order_along(positions: &[Vec3], put: impl Fn(Vec3) -> Vec3 + Sync) -> Vec<u32> {
     // The code alone is compared first: codes are equal for few.
     let mut coded: Vec<(u64, u32)> =
-        positions.par_iter().enumerate().map(|(n, &p)| (morton(p), n as u32)).collect();
+        positions.par_iter().enumerate().map(|(n, &p)| (morton(put(p)), n as u32)).collect();
     coded.par_sort_unstable_by_key(|coded| coded.0);
     for same in coded.chunk_by_mut(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
         same.sort_unstable_by_key(|&(_, n)| key(positions[n as usize]));

@@ -58,7 +58,7 @@ pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
 fn is_rough(input: &Input, bound: f64) -> bool {
     match input {
         Input::Mesh(_) => false,
-        Input::Cloud(cloud) => noise(&cloud.positions).is_none_or(|noise| is_noisy(noise, bound)),
+        Input::Cloud(cloud) => noise(cloud).is_none_or(|noise| is_noisy(noise, bound)),
     }
 }
 

@@ -121,7 +121,7 @@ fn of_mesh<'a>(input: &'a Input, mesh: &Mesh, options: &'a Options, max_error: f
 }
 
 fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error: f64) -> Result<Meant<'a>> {
-    let noise = noise(&cloud.positions);
+    let noise = noise(cloud);
     let itself = Meant { noise, ..itself(input, options) };
     // Where a bound is kept without, too: noise nearly as wide as the points lie apart hides how the
     // surface goes on from one to the next, and bumps make splats small.
@@ -132,7 +132,7 @@ fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error
     let lines = cloud_lines(&options.edges, &given, options.edge_angle, max_error);
     let sided = Sided::of(cloud, options.normals.into(), lines, Some(noise))?;
     let Quieted { cloud: smoothed, moved_rms, moved_max } = quieted(cloud, &sided, max_error)?;
-    let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&smoothed.positions) });
+    let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&smoothed) });
     // Smoothed on either side of its creases, a cloud shows others where these were lost in the noise.
     let edges = Cow::Owned(Edges::Given(input_lines(&sided.lines, &cloud.frame)));
     Ok(Meant { input: Cow::Owned(Input::Cloud(smoothed)), edges, made, ..itself })

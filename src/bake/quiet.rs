@@ -129,7 +129,7 @@ mod tests {
         let mut cloud = sphere(20_000, 0.01);
         cloud.positions[7] = Vec3::new(0.0, 0.0, 0.95);
         let bound = 0.01;
-        let noise = noise(&cloud.positions).unwrap();
+        let noise = noise(&cloud).unwrap();
         let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(&[]), Some(noise)).unwrap();
         let quiet = quieted(&cloud, &sided, bound).unwrap();
         assert_eq!(quiet.cloud.positions[7], cloud.positions[7]);

@@ -45,7 +45,7 @@ pub(super) fn without_outliers<'a>(input: &'a Input, edges: &Edges) -> Result<Ke
     let options = Options::default();
     let (noise, max_error) = match input {
         Input::Mesh(_) => (None, 0.0),
-        Input::Cloud(cloud) => (noise(&cloud.positions), model_error(&options, input)?),
+        Input::Cloud(cloud) => (noise(cloud), model_error(&options, input)?),
     };
     kept(input, edges, noise, &options, max_error)
 }
