@@ -20,9 +20,11 @@ use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_creases::{Sought, cloud_creases};
+use crate::analyse::cloud_normals::NormalSource;
 use crate::analyse::cloud_surface::{CloudSurface, Lines, OpenPlace, cloud_surface};
 use crate::analyse::mesh_surface::{Features, Found, Making, Marked, cut_lines};
 use crate::analyse::partners::Tally;
+use crate::analyse::sided::Sided;
 use crate::analyse::surface::Surface;
 use crate::analyse::thin::Reach;
 use crate::analyse::worth::Worth;
@@ -385,7 +387,7 @@ fn sought(edge_angle: f64, max_error: f64) -> Sought {
 ///
 /// A mesh's lines come as segments of two points. Lines given with a mesh are moved onto the edges
 /// they mean where they lie a little off these, kept as they are where they mean none (they are lost,
-/// and cut nothing), and left out where the mesh is smooth; those given with a cloud come as they are.
+/// and cut nothing). Lines given with a mesh or a cloud are left out where that is smooth.
 /// `edge_angle` is in degrees; `max_error`, in model units, decides which found lines are too short to
 /// count. `None` where there are no lines: for a smooth cloud, for a smooth closed mesh, and for
 /// [`Edges::None`].
@@ -404,7 +406,10 @@ pub fn feature_lines(
             let making = making(max_error, diagonal(&mesh.vertices.positions));
             cut_lines(mesh, &features(mesh, edges, edge_angle, max_error), &making)
         }
-        (Input::Cloud(cloud), Edges::Given(lines)) => model_lines(lines, &cloud.frame),
+        (Input::Cloud(cloud), Edges::Given(lines)) => {
+            let lines = model_lines(lines, &cloud.frame);
+            Sided::of(cloud, NormalSource::Auto, Lines::Given(&lines), noise(cloud))?.lines
+        }
         (Input::Cloud(cloud), Edges::Auto) => {
             cloud_creases(cloud, &sought(edge_angle, max_error), noise(cloud))?
         }

@@ -14,7 +14,7 @@ pub use super::open_places::OpenPlace;
 use super::open_places::open_places;
 use super::outliers::{Strewn, outliers};
 pub use super::sided::Lines;
-use super::sided::Sided;
+use super::sided::{Cleaned, Sided};
 use super::surface::{NONE, Surface};
 use super::thin::{Reach, Sheet, owners};
 use crate::error::Result;
@@ -57,8 +57,8 @@ struct Laid {
     ends: Vec<(u32, End)>,
     on_line: Vec<bool>,
     outlier: Vec<bool>,
-    /// Of the lines, those far from the cloud.
-    lost: Vec<u32>,
+    /// What became of the lines that part nothing.
+    cleaned: Cleaned,
 }
 
 /// The surface of a cloud, cut along feature lines.
@@ -80,7 +80,7 @@ pub fn cloud_surface(
 ) -> Result<CloudSurface> {
     let laid = Laid::of(cloud, source, lines, noise)?;
     let (left_out, open_places) = (laid.left_out(), laid.open_places());
-    let Laid { points, normals, cut, joined, joins, on_line, outlier, lost, .. } = laid;
+    let Laid { points, normals, cut, joined, joins, on_line, outlier, cleaned, .. } = laid;
     let sheet = Sheet {
         positions: &points.positions,
         normals: &normals.normals,
@@ -92,7 +92,7 @@ pub fn cloud_surface(
     let surface = Assembly::new(&sheet, &points.colors, &owner, cut.as_ref()).surface(joins);
     let (edges, length) = cut.as_ref().map_or((0, 0.0), LineCut::found);
     let matched = match lines {
-        Lines::Given(lines) if !lines.is_empty() => Some(matched(lines, edges, length, lost)),
+        Lines::Given(lines) if !lines.is_empty() => Some(matched(lines, edges, length, cleaned)),
         Lines::Given(_) | Lines::Found(_) => None,
     };
     Ok(CloudSurface { surface, left_out, edges, open_places, matched })
@@ -133,8 +133,8 @@ impl Laid {
         };
         let outlier = outliers(&strewn);
         // Their neighbours are no longer needed.
-        let Sided { points, normals, cut, lost, .. } = sided;
-        Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, lost })
+        let Sided { points, normals, cut, cleaned, .. } = sided;
+        Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, cleaned })
     }
 
     fn left_out(&self) -> Vec<u32> {
@@ -192,7 +192,9 @@ fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
     joined
 }
 
-fn matched(lines: &[Vec<DVec3>], edges: usize, matched_length: f64, lost: Vec<u32>) -> Matched {
+fn matched(lines: &[Vec<DVec3>], edges: usize, cut_length: f64, cleaned: Cleaned) -> Matched {
     let length = lines.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
-    Matched { edges, length, matched_length: matched_length.min(length), lost, ..Matched::default() }
+    let Cleaned { far: lost, merged: merged_length, smooth: smooth_length } = cleaned;
+    let matched_length = (cut_length + merged_length + smooth_length).min(length);
+    Matched { edges, length, matched_length, smooth_length, merged_length, lost, ..Matched::default() }
 }

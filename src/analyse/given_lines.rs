@@ -16,11 +16,11 @@ const NEAR_SHARE: f64 = 0.05;
 
 /// Lines along edges whose faces turn by less (degrees) bound nothing that a smooth splat
 /// could not cross, and are left out.
-const SMOOTH_DEGREES: f64 = 5.0;
+pub(super) const SMOOTH_DEGREES: f64 = 5.0;
 
 /// Nor do lines whose faces turn by less than [`SMOOTH_DEGREES`] on the mean and nowhere by this
 /// much: the seams of round faces, as coarse as their facets are.
-const SHARP_DEGREES: f64 = 10.0;
+pub(super) const SHARP_DEGREES: f64 = 10.0;
 
 /// What an edge counts as that does not join two agreeing faces: it ends the surface.
 const OPEN_DEGREES: f64 = 180.0;
@@ -38,6 +38,8 @@ pub struct Matched {
     pub smooth_length: f64,
     /// Length of the given lines that pass beside the edges they mean, and were moved onto them.
     pub moved_length: f64,
+    /// Length of the lines that run beside others, closer than a cloud's points lie apart, and gave way to them.
+    pub merged_length: f64,
     /// Given segments, ascending, that lie beside no edge of a mesh, or on lines far from a cloud:
     /// they mean nothing.
     pub lost: Vec<u32>,

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::canonical;
+use super::doubled::merged;
 use super::nearest::Search;
 use super::surface::{NONE, Rows};
 
@@ -17,6 +18,10 @@ const SMOOTH: f64 = 0.866;
 
 /// A line farther than this many spacings from the cloud touches no surface.
 const OFF: f64 = 3.0;
+
+/// Of lines closer together than this many spacings one is left: a surface between them would have less than a row of
+/// points. With 0.7 the thread of abc-00000049, of 500,000 points, takes 1.4 times the bytes; with 1.5 as many.
+const CLOSE: f64 = 1.0;
 
 /// Segments are halved no more than so often: a million samples on one.
 const HALVINGS: u32 = 20;
@@ -36,6 +41,19 @@ pub struct Network {
     /// Segments as given, counted over all lines, of those lines no part of which comes near the
     /// cloud; ascending.
     pub far: Vec<u32>,
+    /// Length of the lines that ran closely beside others and gave way to them, model units.
+    pub merged: f64,
+}
+
+/// Segments that go smoothly on, one to the next.
+#[derive(Clone, Debug)]
+pub struct Strand {
+    /// The segments, in the order in which they follow each other.
+    pub segments: Vec<u32>,
+    /// Whether the last leads to the first.
+    pub closed: bool,
+    /// Model units.
+    pub length: f64,
 }
 
 impl Network {
@@ -58,10 +76,12 @@ impl Network {
                 far.extend(first..given);
             }
         }
-        Self { far, ..Self::of_pieces(&pieces) }
+        let reach = |place: DVec3| near(place).map_or(0.0, |(_, spacing)| CLOSE * spacing);
+        let (pieces, merged) = merged(&Self::of_pieces(&pieces), &reach);
+        Self { far, merged, ..Self::of_pieces(&pieces) }
     }
 
-    fn of_pieces(pieces: &[[Vec3; 2]]) -> Self {
+    pub(super) fn of_pieces(pieces: &[[Vec3; 2]]) -> Self {
         let mut nodes: Vec<Vec3> = pieces.as_flattened().to_vec();
         nodes.sort_unstable_by_key(|&node| canonical::key(node));
         nodes.dedup();
@@ -79,7 +99,7 @@ impl Network {
         segments.dedup();
         let at_node =
             segments.iter().zip(0_u32..).flat_map(|(ends, segment)| ends.map(|end| (end, segment))).collect();
-        Self { at_node: Rows::from_pairs(nodes.len(), at_node), nodes, segments, far: Vec::new() }
+        Self { at_node: Rows::from_pairs(nodes.len(), at_node), nodes, segments, ..Self::default() }
     }
 
     /// A segment's ends.
@@ -128,6 +148,47 @@ impl Network {
             let next = self.beyond(segment, node);
             (next != NONE).then(|| (next, self.across(next, node)))
         })
+    }
+
+    /// The strands of the network, each segment in one, the longest first.
+    #[must_use]
+    pub fn strands(&self) -> Vec<Strand> {
+        let mut seen = vec![false; self.segments.len()];
+        let mut strands = Vec::new();
+        for first in 0..self.segments.len() as u32 {
+            if !seen[first as usize] {
+                let strand = self.strand(first);
+                strand.segments.iter().for_each(|&segment| seen[segment as usize] = true);
+                strands.push(strand);
+            }
+        }
+        // Stable: of those as long the first stays first.
+        strands.sort_by(|a, b| b.length.total_cmp(&a.length));
+        strands
+    }
+
+    fn strand(&self, segment: u32) -> Strand {
+        let onward = |end: usize| {
+            self.onward(segment, self.segments[segment as usize][end]).skip(1).map(|(segment, _)| segment)
+        };
+        let closed = onward(1).any(|other| other == segment);
+        let mut segments: Vec<u32> = if closed { Vec::new() } else { onward(0).collect() };
+        segments.reverse();
+        segments.push(segment);
+        segments.extend(onward(1).take_while(|&other| other != segment));
+        let length = segments.iter().map(|&segment| self.length(segment)).sum();
+        Strand { segments, closed, length }
+    }
+
+    /// The network without some of its segments, which are numbered ascending.
+    #[must_use]
+    pub fn without(self, segments: &[u32]) -> Self {
+        let is_left = |segment: &u32| segments.binary_search(segment).is_err();
+        let left = (0..self.segments.len() as u32).filter(is_left);
+        let pieces: Vec<[Vec3; 2]> = left
+            .map(|segment| self.segments[segment as usize].map(|node| self.nodes[node as usize]))
+            .collect();
+        Self { far: self.far, merged: self.merged, ..Self::of_pieces(&pieces) }
     }
 
     /// The node of a segment that is not this one of its two.

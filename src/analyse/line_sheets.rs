@@ -94,28 +94,8 @@ impl Sheets {
     /// Finds the sheets that meet at each segment of a network.
     #[must_use]
     pub fn find(network: &Network, sites: &Sites) -> Self {
-        let ends = (0..network.segments.len() as u32).map(|segment| network.ends(segment)).collect();
-        let grid = SegmentGrid::new(ends);
-        let beside: Vec<Option<Beside>> = (0..sites.positions.len())
-            .into_par_iter()
-            .map(|n| {
-                let spacing = f64::from(sites.spacing[n]);
-                let point = sites.positions[n].as_dvec3();
-                let near = grid.nearest(point, too_near(sites, n) + DEPTH * spacing)?;
-                Some(beside(network, near.segment, point))
-            })
-            .collect();
-        let votes = |(n, beside): (usize, &Option<Beside>)| {
-            let beside = beside.as_ref().filter(|beside| !beside.at_end)?;
-            let far = beside.offset.length() > too_near(sites, n);
-            far.then_some((beside.segment, n as u32))
-        };
-        let voters =
-            Rows::from_pairs(network.segments.len(), beside.iter().enumerate().filter_map(votes).collect());
-        let of = (0..network.segments.len() as u32)
-            .into_par_iter()
-            .map(|segment| sheets(network, sites, &beside, &voters, segment))
-            .collect();
+        let beside = beside_lines(network, sites);
+        let of = sheets_of(network, sites, &beside, |_| true);
         Self { of, beside }
     }
 
@@ -132,6 +112,39 @@ impl Sheets {
         });
         nearest.map(|(index, _)| index)
     }
+}
+
+/// The nearest place on a network's lines of each point near one.
+#[must_use]
+pub fn beside_lines(network: &Network, sites: &Sites) -> Vec<Option<Beside>> {
+    let ends = (0..network.segments.len() as u32).map(|segment| network.ends(segment)).collect();
+    let grid = SegmentGrid::new(ends);
+    let beside = |n: usize| {
+        let point = sites.positions[n].as_dvec3();
+        let near = grid.nearest(point, too_near(sites, n) + DEPTH * f64::from(sites.spacing[n]))?;
+        Some(beside(network, near.segment, point))
+    };
+    (0..sites.positions.len()).into_par_iter().map(beside).collect()
+}
+
+/// The sheets that meet at each segment of a network, in the order of their angle, as the points beside some segments
+/// tell them.
+#[must_use]
+pub fn sheets_of(
+    network: &Network,
+    sites: &Sites,
+    beside: &[Option<Beside>],
+    tells: impl Fn(u32) -> bool,
+) -> Vec<Vec<Sheet>> {
+    let votes = |(n, beside): (usize, &Option<Beside>)| {
+        let beside = beside.as_ref().filter(|beside| !beside.at_end && tells(beside.segment))?;
+        let far = beside.offset.length() > too_near(sites, n);
+        far.then_some((beside.segment, n as u32))
+    };
+    let voters =
+        Rows::from_pairs(network.segments.len(), beside.iter().enumerate().filter_map(votes).collect());
+    let segments = (0..network.segments.len() as u32).into_par_iter();
+    segments.map(|segment| sheets(network, sites, beside, &voters, segment)).collect()
 }
 
 /// Within how far of a line a point has no direction from it, model units.

@@ -16,6 +16,7 @@ pub mod cloud_surface;
 pub mod creases;
 mod curved;
 pub mod distinct;
+pub mod doubled;
 mod edge_paths;
 pub mod edges;
 pub mod given_lines;
@@ -33,6 +34,7 @@ pub mod partners;
 #[cfg(test)]
 pub(crate) mod planted;
 pub mod refine;
+pub mod seams;
 pub mod segment_grid;
 pub mod sets;
 pub mod sided;

@@ -11,6 +11,7 @@ use super::distinct::{Distinct, distinct};
 use super::line_cut::LineCut;
 use super::line_network::Network;
 use super::nearest::{Nearest, Search, spacing};
+use super::seams::{off_seams, seams};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 
@@ -21,6 +22,17 @@ pub enum Lines<'a> {
     Given(&'a [Vec<DVec3>]),
     /// Its creases, so far as they are these.
     Found(Sought),
+}
+
+/// Lines that part nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Cleaned {
+    /// Segments as given, counted over all lines, ascending, of lines far from the cloud.
+    pub far: Vec<u32>,
+    /// Length of the lines that ran closely beside others and gave way to them, model units.
+    pub merged: f64,
+    /// Length of the given lines along which the surface is smooth, model units.
+    pub smooth: f64,
 }
 
 /// A cloud's points, told apart by feature lines.
@@ -34,12 +46,12 @@ pub struct Sided {
     pub spacing: Vec<f32>,
     /// Unit normals; those estimated are of one side.
     pub normals: Normals,
-    /// The feature lines, model units.
+    /// The feature lines, model units; of those given the ones at which the surface is not smooth.
     pub lines: Vec<Vec<DVec3>>,
     /// The sides, where a line is near the cloud.
     pub cut: Option<LineCut>,
-    /// Of the lines, those far from the cloud.
-    pub lost: Vec<u32>,
+    /// What became of the lines that part nothing.
+    pub cleaned: Cleaned,
     noise: f64,
 }
 
@@ -55,19 +67,32 @@ impl Sided {
         let nearest = search.nearest();
         let spacing = spacing(&points.positions, &nearest);
         let normals = normals(&points, &nearest, source)?;
-        let lines = match lines {
-            Lines::Given(lines) => lines.to_vec(),
-            Lines::Found(sought) => found(&points.positions, &search, &nearest, &spacing, &sought, noise)?,
+        let (lines, given) = match lines {
+            Lines::Given(lines) => (lines.to_vec(), true),
+            Lines::Found(sought) => {
+                (found(&points.positions, &search, &nearest, &spacing, &sought, noise)?, false)
+            }
         };
-        let mut network = Network::new(&lines, &search, &points.positions, &spacing);
+        let network = Network::new(&lines, &search, &points.positions, &spacing);
         drop(search);
-        let lost = std::mem::take(&mut network.far);
+        let cleaned = Cleaned { far: network.far.clone(), merged: network.merged, smooth: 0.0 };
         let noise = noise.unwrap_or_default();
-        let mut sided = Self { points, nearest, spacing, normals, lines, cut: None, lost, noise };
+        let mut sided = Self { points, nearest, spacing, normals, lines, cut: None, cleaned, noise };
+        let network = if given { sided.without_seams(network) } else { network };
         if !network.segments.is_empty() {
             sided.part(network);
         }
         Ok(sided)
+    }
+
+    /// Leaves out the lines along which the surface is smooth, and their part of a network.
+    fn without_seams(&mut self, network: Network) -> Network {
+        let seams = seams(&network, &self.sites());
+        if seams.is_empty() {
+            return network;
+        }
+        (self.lines, self.cleaned.smooth) = off_seams(&self.lines, &network, &seams);
+        network.without(&seams)
     }
 
     /// Tells the points apart along a network; estimated normals beside it are estimated again.

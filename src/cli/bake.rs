@@ -305,6 +305,7 @@ impl Arguments {
             lines_matched: matched.map(|matched| matched.matched_length / matched.length),
             lines_smooth: matched.map(|matched| matched.smooth_length / matched.length),
             lines_moved: matched.map(|matched| matched.moved_length / matched.length),
+            lines_merged: matched.map(|matched| matched.merged_length / matched.length),
             lines_lost: lost(options, &baked.features),
         }
     }

@@ -55,9 +55,9 @@ pub struct Input {
     pub feature_edges: u64,
     /// Segments of the feature lines that were given; `None` if none were.
     pub line_segments: Option<u64>,
-    /// Share of the given lines' length that was found on the mesh; `None` without lines.
+    /// Share of the given lines' length that was found on the mesh or cloud; `None` without lines.
     pub lines_matched: Option<f64>,
-    /// Share of the given lines' length along which the mesh is smooth: nothing is cut there;
+    /// Share of the given lines' length along which the mesh or cloud is smooth: nothing is cut there;
     /// `None` without lines.
     #[serde(default)]
     pub lines_smooth: Option<f64>,
@@ -65,6 +65,10 @@ pub struct Input {
     /// moved onto them; `None` without lines.
     #[serde(default)]
     pub lines_moved: Option<f64>,
+    /// Share of the given lines' length that runs beside others of them, closer than the points of a
+    /// cloud lie apart: one line stands for both; `None` without lines.
+    #[serde(default)]
+    pub lines_merged: Option<f64>,
     /// Given lines, by their number in the file, from 1, that lie beside no edge of the mesh, or far
     /// from the cloud, and were left out.
     #[serde(default)]

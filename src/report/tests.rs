@@ -68,6 +68,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         lines_matched: None,
         lines_smooth: None,
         lines_moved: None,
+        lines_merged: None,
         lines_lost: Vec::new(),
     };
     let options = Options {
