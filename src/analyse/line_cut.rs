@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use super::cloud_graph::{Joined, Sites};
 use super::line_network::Network;
-use super::line_sheets::{Sheet, Sheets};
+use super::line_sheets::{Sheet, Sheets, too_near};
+use super::orient::Across;
 use super::segment_grid::SegmentGrid;
 use super::surface::NONE;
 use crate::model::discs::End;
@@ -98,6 +99,29 @@ impl LineCut {
         cut
     }
 
+    /// The same lines, with the sheets as the normals are now.
+    #[must_use]
+    pub fn again(self, sites: &Sites) -> Self {
+        Self::new(self.network, sites)
+    }
+
+    /// Pairs of points on the two sheets of a segment, and whether their normals look to opposite sides.
+    #[must_use]
+    pub fn across(&self, sites: &Sites) -> Vec<Across> {
+        let mut pairs = Vec::new();
+        for (segment, sheets) in (0_u32..).zip(&self.sheets.of) {
+            let [a, b] = sheets.as_slice() else { continue };
+            let along = self.network.along(segment);
+            // Round the line from the one sheet into the other, through what both bound.
+            let facing = [along.cross(a.inward), b.inward.cross(along)];
+            for points in a.points.iter().zip(&b.points).take(JOINED).map(|(&a, &b)| [a, b]) {
+                let looks = |n: usize| sites.normals[points[n] as usize].as_dvec3().dot(facing[n]) < 0.0;
+                pairs.push(Across { points, opposite: looks(0) != looks(1) });
+            }
+        }
+        pairs
+    }
+
     fn sheet(&self, border: &Border) -> &Sheet {
         &self.sheets.of[border.segment as usize][border.sheet]
     }
@@ -182,6 +206,13 @@ impl LineCut {
         self.sheets.beside[point as usize].is_some()
     }
 
+    /// Whether a point of the cloud lies too near to a line to have a direction from it.
+    #[must_use]
+    pub fn is_on(&self, sites: &Sites, point: u32) -> bool {
+        let beside = self.sheets.beside[point as usize].as_ref();
+        beside.is_some_and(|beside| beside.offset.length() <= too_near(sites, point as usize))
+    }
+
     /// Whether the straight way between two points of the cloud crosses from sheet to sheet.
     #[must_use]
     pub fn parts(&self, sites: &Sites, a: u32, b: u32) -> bool {
@@ -224,18 +255,23 @@ impl LineCut {
 
     /// The border of its own sheet that runs beside a point of the cloud.
     fn border_beside(&self, sites: &Sites, point: u32) -> Option<&Border> {
+        self.border_within(sites, point, BESIDE * f64::from(sites.spacing[point as usize]))
+    }
+
+    fn border_within(&self, sites: &Sites, point: u32, reach: f64) -> Option<&Border> {
         let beside = self.sheets.beside[point as usize].as_ref()?;
-        let near = beside.offset.length() <= BESIDE * f64::from(sites.spacing[point as usize]);
         let position = sites.positions[point as usize].as_dvec3();
         let sheet = self.sheets.toward(&self.network, beside.segment, position)?;
         let border = self.first_border[beside.segment as usize] as usize + sheet;
-        (near && !beside.at_end).then(|| &self.borders[border])
+        (beside.offset.length() <= reach && !beside.at_end).then(|| &self.borders[border])
     }
 
     /// The normal of a point, where it lies beside a border and its own mixes sheets: that of the border's.
     #[must_use]
     pub fn mended(&self, sites: &Sites, point: u32, normal: Vec3) -> Vec3 {
-        let sheet = self.border_beside(sites, point).map(|border| self.sheet(border).normal.as_vec3());
+        let beside = BESIDE * f64::from(sites.spacing[point as usize]);
+        let border = self.border_within(sites, point, beside.max(too_near(sites, point as usize)));
+        let sheet = border.map(|border| self.sheet(border).normal.as_vec3());
         sheet.filter(|sheet| sheet.dot(normal) < MIXED).unwrap_or(normal)
     }
 

@@ -148,7 +148,8 @@ pub fn sheets_of(
 }
 
 /// Within how far of a line a point has no direction from it, model units.
-fn too_near(sites: &Sites, point: usize) -> f64 {
+#[must_use]
+pub fn too_near(sites: &Sites, point: usize) -> f64 {
     let spacing = f64::from(sites.spacing[point]);
     (TOO_NEAR * spacing).max(ABOVE_NOISE * sites.noise.min(NOISIEST * spacing))
 }

@@ -17,6 +17,10 @@ const TAKEN: usize = 8;
 /// they come: no sign is in doubt there, and sorting them would cost more than all the rest.
 const SURE: f32 = 0.985;
 
+/// Along the surface the signs of ends whose normals agree less than this, up to them (cosine of 60°), are in more
+/// doubt than those over a feature line.
+const CLEAR: f32 = 0.5;
+
 /// A component whose normals look outward at its outermost points by less than this, of 1
 /// for a closed smooth surface, is a patch: it is turned away from the model's middle.
 const OUTERMOST: f64 = 0.3;
@@ -66,41 +70,96 @@ impl SignedSets {
     }
 }
 
+/// Two points on either side of a feature line, and whether their normals look to opposite sides of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Across {
+    /// The points.
+    pub points: [u32; 2],
+    /// Whether one of the normals must be turned.
+    pub opposite: bool,
+}
+
 /// Turns normals so that neighbours agree and outermost points look outward.
 pub fn orient(positions: &[Vec3], nearest: &Nearest, normals: &mut [Vec3]) {
-    let mut sets = tied(nearest, normals);
-    let mut roots = Vec::with_capacity(normals.len());
-    for point in 0..normals.len() as u32 {
-        let (root, turned) = sets.root(point);
-        roots.push(root);
-        if turned {
-            normals[point as usize] = -normals[point as usize];
-        }
-    }
+    orient_sides(positions, nearest, normals, &|_, _| false, &[]);
+}
+
+/// As [`orient`] where feature lines part the points: signs are carried on within each sheet, and over a line as
+/// most pairs of points beside it tell, however sharply the surface turns there. Whether any normal was turned.
+pub fn orient_sides(
+    positions: &[Vec3],
+    nearest: &Nearest,
+    normals: &mut [Vec3],
+    parts: &(impl Fn(u32, u32) -> bool + Sync),
+    across: &[Across],
+) -> bool {
+    let mut sets = tied(nearest, normals, parts, across);
+    let roots: Vec<(u32, bool)> = (0..normals.len() as u32).map(|point| sets.root(point)).collect();
     drop(sets);
+    let before = normals.to_vec();
+    for (normal, _) in normals.iter_mut().zip(&roots).filter(|(_, root)| root.1) {
+        *normal = -*normal;
+    }
+    let roots: Vec<u32> = roots.into_iter().map(|root| root.0).collect();
     let inward = inward(positions, normals, &roots);
     for (normal, root) in normals.iter_mut().zip(&roots) {
         if inward[*root as usize] {
             *normal = -*normal;
         }
     }
+    before != normals
 }
 
-/// The spanning forest's ties.
-fn tied(nearest: &Nearest, normals: &[Vec3]) -> SignedSets {
+/// The spanning forest's ties: where no sign is in doubt, along the surface, over lines, and by what is left.
+fn tied(
+    nearest: &Nearest,
+    normals: &[Vec3],
+    parts: &(impl Fn(u32, u32) -> bool + Sync),
+    across: &[Across],
+) -> SignedSets {
     let mut sets = SignedSets::new(normals.len());
     for (a, row) in (0_u32..).zip(nearest) {
         for b in listed(&row[..TAKEN.min(NEAREST)]) {
             let cosine = normals[a as usize].dot(normals[b as usize]);
-            if cosine.abs() >= SURE {
+            if cosine.abs() >= SURE && !parts(a, b) {
                 sets.tie(a, b, cosine < 0.0);
             }
         }
     }
-    for (_, a, b) in in_doubt(nearest, normals) {
+    let in_doubt = in_doubt(nearest, normals);
+    let tie = |sets: &mut SignedSets, a: u32, b: u32| {
         sets.tie(a, b, normals[a as usize].dot(normals[b as usize]) < 0.0);
+    };
+    let clear = in_doubt.partition_point(|edge| f32::from_bits(edge.0) < 1.0 - CLEAR);
+    if !across.is_empty() {
+        in_doubt[..clear]
+            .iter()
+            .filter(|edge| !parts(edge.1, edge.2))
+            .for_each(|&(_, a, b)| tie(&mut sets, a, b));
+        tie_across(&mut sets, across);
     }
+    in_doubt.iter().for_each(|&(_, a, b)| tie(&mut sets, a, b));
     sets
+}
+
+/// Ties sets over lines as most pairs tell, those first that most more tell of than do not.
+fn tie_across(sets: &mut SignedSets, across: &[Across]) {
+    let mut votes: Vec<([u32; 2], i64)> = Vec::with_capacity(across.len());
+    for Across { points, opposite } in across {
+        let [(a, turned_a), (b, turned_b)] = points.map(|point| sets.root(point));
+        if a != b {
+            votes.push(([a.min(b), a.max(b)], if turned_a ^ turned_b ^ opposite { -1 } else { 1 }));
+        }
+    }
+    votes.sort_unstable();
+    let all = votes
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|same| (same[0].0, same.iter().map(|vote| vote.1).sum::<i64>()));
+    let mut all: Vec<([u32; 2], i64)> = all.collect();
+    all.sort_unstable_by_key(|&(pair, vote)| (std::cmp::Reverse(vote.abs()), pair));
+    for ([a, b], vote) in all {
+        sets.tie(a, b, vote < 0);
+    }
 }
 
 /// The weights and ends of the edges that are not sure, ascending.

@@ -11,6 +11,7 @@ use super::distinct::{Distinct, distinct};
 use super::line_cut::LineCut;
 use super::line_network::Network;
 use super::nearest::{Nearest, Search, spacing};
+use super::orient::orient_sides;
 use super::seams::{off_seams, seams};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
@@ -97,13 +98,23 @@ impl Sided {
 
     /// Tells the points apart along a network; estimated normals beside it are estimated again.
     fn part(&mut self, network: Network) {
-        let sites = self.sites();
-        let cut = LineCut::new(network, &sites);
+        let mut cut = LineCut::new(network, &self.sites());
         if self.normals.estimated {
-            let mut again = self.normals.normals.clone();
-            parted(&self.points, &self.nearest, &|a, b| cut.parts(&sites, a, b), &mut again);
+            let parts = |a, b| cut.parts(&self.sites(), a, b);
+            let mut normals = self.normals.normals.clone();
+            parted(&self.points, &self.nearest, &parts, &mut normals);
+            let across = cut.across(&Sites { normals: &normals, ..self.sites() });
+            // Points too near to a line to be of either side have normals of both.
+            let on_line = |n| cut.is_on(&self.sites(), n);
+            let apart = |a, b| on_line(a) || on_line(b) || parts(a, b);
+            let turned = orient_sides(&self.points.positions, &self.nearest, &mut normals, &apart, &across);
+            self.normals.normals = normals;
+            if turned {
+                cut = cut.again(&self.sites());
+            }
+            let sites = self.sites();
             let mended = |(point, normal): (usize, &Vec3)| cut.mended(&sites, point as u32, *normal);
-            self.normals.normals = again.par_iter().enumerate().map(mended).collect();
+            self.normals.normals = self.normals.normals.par_iter().enumerate().map(mended).collect();
         }
         self.cut = Some(cut);
     }
@@ -117,6 +128,49 @@ impl Sided {
             spacing: &self.spacing,
             nearest: &self.nearest,
             noise: self.noise,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::analyse::planted::{normal, random};
+
+    #[test]
+    fn signs_go_on_over_folds_sharper_than_any_plane_through_both_sides_tells() {
+        // Walls 0.3 high that meet at 60°, above and below by turns; points lie 0.02 apart.
+        let (sin, cos) = libm::sincos(30_f64.to_radians());
+        let wall = |n: u64, way: f64| {
+            let up = n.is_multiple_of(2);
+            let z = if up { way } else { 0.3 - way } * cos;
+            (
+                DVec3::new(0.0, (0.3 * n as f64 + way) * sin, z),
+                DVec3::new(0.0, if up { -cos } else { cos }, sin),
+            )
+        };
+        for noise in [0.0, 0.01] {
+            let (positions, truth): (Vec<Vec3>, Vec<DVec3>) = (0..8000_u64)
+                .map(|n| {
+                    let (place, out) = wall(n % 8, 0.15 + 0.15 * random(2 * n));
+                    let off = DVec3::new(normal(3 * n), normal(3 * n + 1), normal(3 * n + 2));
+                    ((place + 0.5 * random(2 * n + 1) * DVec3::X + noise * off).as_vec3(), out)
+                })
+                .unzip();
+            let cloud = Cloud { positions, ..Cloud::default() };
+            let line = |n: u64| [-0.5, 0.5].map(|x| wall(n, 0.0).0.with_x(x)).to_vec();
+            let lines: Vec<Vec<DVec3>> = (1..8).map(line).collect();
+            let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(&lines), Some(noise)).unwrap();
+            let outward =
+                |(n, &at): (usize, &u32)| sided.normals.normals[at as usize].as_dvec3().dot(truth[n]) > 0.0;
+            // Beside the lines a point may be of either wall.
+            let clear = |n: usize| (0.25..0.75).contains(&(0.5 + 0.5 * random(2 * n as u64)));
+            let clear: Vec<bool> =
+                sided.points.place.iter().enumerate().filter(|(n, _)| clear(*n)).map(outward).collect();
+            let share = clear.iter().filter(|outward| **outward).count() as f64 / clear.len() as f64;
+            assert!(share.max(1.0 - share) > 0.999, "with noise of {noise} {share} look the same way");
         }
     }
 }
