@@ -129,9 +129,12 @@ fn finish(
         return None;
     }
     let trusted = grower.budget.trusted(splat.radii - more);
-    let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
-    let domain = Covering { grower, splat: &splat, conics, trusted };
     let meshed = grower.surface.spots.is_empty();
+    // Points strewn about a line may lie as near to a curve as that is rounded.
+    let stored = if meshed { None } else { Some((grower.round)(&splat)?.clips) };
+    let clips = stored.as_ref().unwrap_or(&splat.clips);
+    let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+    let domain = Covering { grower, splat: &splat, conics, trusted };
     let pieces = if meshed { domain.triangles(region) } else { domain.spots(region) }?;
     let end_clips = grower.end_clips(&pose, splat.radii, region)?;
     splat.color = mean_color(grower, &pieces);
