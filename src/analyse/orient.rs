@@ -90,53 +90,52 @@ pub fn orient_sides(
     positions: &[Vec3],
     nearest: &Nearest,
     normals: &mut [Vec3],
-    parts: &(impl Fn(u32, u32) -> bool + Sync),
+    parts: &impl Fn(u32, u32) -> bool,
     across: &[Across],
 ) -> bool {
     let mut sets = tied(nearest, normals, parts, across);
-    let roots: Vec<(u32, bool)> = (0..normals.len() as u32).map(|point| sets.root(point)).collect();
+    let (roots, turned): (Vec<u32>, Vec<bool>) = (0..normals.len() as u32).map(|n| sets.root(n)).unzip();
     drop(sets);
-    let before = normals.to_vec();
-    for (normal, _) in normals.iter_mut().zip(&roots).filter(|(_, root)| root.1) {
+    for (normal, _) in normals.iter_mut().zip(&turned).filter(|(_, turned)| **turned) {
         *normal = -*normal;
     }
-    let roots: Vec<u32> = roots.into_iter().map(|root| root.0).collect();
     let inward = inward(positions, normals, &roots);
-    for (normal, root) in normals.iter_mut().zip(&roots) {
-        if inward[*root as usize] {
-            *normal = -*normal;
-        }
+    for (normal, _) in normals.iter_mut().zip(&roots).filter(|(_, root)| inward[**root as usize]) {
+        *normal = -*normal;
     }
-    before != normals
+    roots.iter().zip(turned).any(|(root, turned)| turned != inward[*root as usize])
 }
 
 /// The spanning forest's ties: where no sign is in doubt, along the surface, over lines, and by what is left.
 fn tied(
     nearest: &Nearest,
     normals: &[Vec3],
-    parts: &(impl Fn(u32, u32) -> bool + Sync),
+    parts: &impl Fn(u32, u32) -> bool,
     across: &[Across],
 ) -> SignedSets {
     let mut sets = SignedSets::new(normals.len());
-    for (a, row) in (0_u32..).zip(nearest) {
-        for b in listed(&row[..TAKEN.min(NEAREST)]) {
-            let cosine = normals[a as usize].dot(normals[b as usize]);
-            if cosine.abs() >= SURE && !parts(a, b) {
-                sets.tie(a, b, cosine < 0.0);
-            }
-        }
-    }
-    let in_doubt = in_doubt(nearest, normals);
     let tie = |sets: &mut SignedSets, a: u32, b: u32| {
         sets.tie(a, b, normals[a as usize].dot(normals[b as usize]) < 0.0);
     };
-    let clear = in_doubt.partition_point(|edge| f32::from_bits(edge.0) < 1.0 - CLEAR);
+    let tie_sure = |sets: &mut SignedSets, apart: &dyn Fn(u32, u32) -> bool| {
+        for (a, row) in (0_u32..).zip(nearest) {
+            for b in listed(&row[..TAKEN.min(NEAREST)]) {
+                let sure = normals[a as usize].dot(normals[b as usize]).abs() >= SURE;
+                if sure && !apart(a, b) {
+                    tie(sets, a, b);
+                }
+            }
+        }
+    };
+    tie_sure(&mut sets, parts);
+    let in_doubt = in_doubt(nearest, normals);
     if !across.is_empty() {
-        in_doubt[..clear]
-            .iter()
-            .filter(|edge| !parts(edge.1, edge.2))
-            .for_each(|&(_, a, b)| tie(&mut sets, a, b));
+        let clear = in_doubt.partition_point(|edge| f32::from_bits(edge.0) < 1.0 - CLEAR);
+        let along = in_doubt[..clear].iter().filter(|edge| !parts(edge.1, edge.2));
+        along.for_each(|&(_, a, b)| tie(&mut sets, a, b));
         tie_across(&mut sets, across);
+        // What lies on the lines follows what it lies beside.
+        tie_sure(&mut sets, &|_, _| false);
     }
     in_doubt.iter().for_each(|&(_, a, b)| tie(&mut sets, a, b));
     sets
