@@ -52,7 +52,6 @@ use growing::Growing;
 pub use kept::{Kept, kept};
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
-use noise::noise;
 pub use options::{Colors, DEFAULT_EFFORT, Edges, Holes, MaxError, Meaning, Normals, Options};
 use partnered::{partnered, rule};
 
@@ -388,7 +387,7 @@ fn sought(edge_angle: f64, max_error: f64) -> Sought {
 /// A mesh's lines come as segments of two points. Lines given with a mesh are moved onto the edges
 /// they mean where they lie a little off these, kept as they are where they mean none (they are lost,
 /// and cut nothing). Lines given with a mesh or a cloud are left out where that is smooth.
-/// `edge_angle` is in degrees; `max_error`, in model units, decides which found lines are too short to
+/// `noise` is that of a cloud's points, model units; `edge_angle` is in degrees; `max_error`, in model units, decides which found lines are too short to
 /// count. `None` where there are no lines: for a smooth cloud, for a smooth closed mesh, and for
 /// [`Edges::None`].
 ///
@@ -397,6 +396,7 @@ fn sought(edge_angle: f64, max_error: f64) -> Sought {
 pub fn feature_lines(
     input: &Input,
     edges: &Edges,
+    noise: Option<f64>,
     edge_angle: f64,
     max_error: f64,
 ) -> Result<Option<Vec<Vec<DVec3>>>> {
@@ -408,11 +408,9 @@ pub fn feature_lines(
         }
         (Input::Cloud(cloud), Edges::Given(lines)) => {
             let lines = model_lines(lines, &cloud.frame);
-            Sided::of(cloud, NormalSource::Auto, Lines::Given(&lines), noise(cloud))?.lines
+            Sided::of(cloud, NormalSource::Auto, Lines::Given(&lines), noise)?.lines
         }
-        (Input::Cloud(cloud), Edges::Auto) => {
-            cloud_creases(cloud, &sought(edge_angle, max_error), noise(cloud))?
-        }
+        (Input::Cloud(cloud), Edges::Auto) => cloud_creases(cloud, &sought(edge_angle, max_error), noise)?,
     };
     Ok((!lines.is_empty()).then_some(lines))
 }

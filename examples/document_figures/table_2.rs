@@ -139,7 +139,13 @@ fn bake(part: &Model, bound: f64, clips: Clips) -> Result<Baked> {
     let options = Options { max_error: MaxError::Relative(bound), clips, ..part.options() };
     let delivery = deliver::deliver(&part.input, &options, &mut Silent)?;
     let asset = &delivery.asset;
-    let lines = feature_lines(&part.input, &options.edges, options.edge_angle, asset.max_error)?;
+    let lines = feature_lines(
+        &part.input,
+        &options.edges,
+        delivery.baked.noise,
+        options.edge_angle,
+        asset.max_error,
+    )?;
     let found = lines.and_then(|lines| edge(asset, &lines));
     Ok(Baked {
         splats: asset.splats.len(),

@@ -20,6 +20,7 @@ use super::thin::{Reach, Sheet, owners};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 use crate::model::discs::{Disc, Discs, End};
+use crate::model::polyline::length;
 
 /// The surface of a cloud, and what is not part of it.
 #[derive(Clone, Debug, Default)]
@@ -193,7 +194,7 @@ fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
 }
 
 fn matched(lines: &[Vec<DVec3>], edges: usize, cut_length: f64, cleaned: Cleaned) -> Matched {
-    let length = lines.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
+    let length = length(lines);
     let Cleaned { far: lost, merged: merged_length, smooth: smooth_length } = cleaned;
     let matched_length = (cut_length + merged_length + smooth_length).min(length);
     Matched { edges, length, matched_length, smooth_length, merged_length, lost, ..Matched::default() }

@@ -15,6 +15,7 @@ use super::orient::orient_sides;
 use super::seams::{off_seams, seams};
 use crate::error::Result;
 use crate::model::cloud::Cloud;
+use crate::model::polyline::length;
 
 /// Where the feature lines of a cloud come from.
 #[derive(Clone, Copy, Debug)]
@@ -68,18 +69,19 @@ impl Sided {
         let nearest = search.nearest();
         let spacing = spacing(&points.positions, &nearest);
         let normals = normals(&points, &nearest, source)?;
-        let (lines, given) = match lines {
-            Lines::Given(lines) => (lines.to_vec(), true),
-            Lines::Found(sought) => {
-                (found(&points.positions, &search, &nearest, &spacing, &sought, noise)?, false)
-            }
+        let given = matches!(lines, Lines::Given(_));
+        let lines = match lines {
+            Lines::Given(lines) => lines.to_vec(),
+            Lines::Found(sought) => found(&points.positions, &search, &nearest, &spacing, &sought, noise)?,
         };
-        let network = Network::new(&lines, &search, &points.positions, &spacing);
+        let mut network = Network::new(&lines, &search, &points.positions, &spacing);
         drop(search);
-        let cleaned = Cleaned { far: network.far.clone(), merged: network.merged, smooth: 0.0 };
+        let cleaned = Cleaned { far: std::mem::take(&mut network.far), merged: network.merged, smooth: 0.0 };
         let noise = noise.unwrap_or_default();
         let mut sided = Self { points, nearest, spacing, normals, lines, cut: None, cleaned, noise };
-        let network = if given { sided.without_seams(network) } else { network };
+        if given && !network.segments.is_empty() {
+            network = sided.without_seams(network);
+        }
         if !network.segments.is_empty() {
             sided.part(network);
         }
@@ -92,7 +94,9 @@ impl Sided {
         if seams.is_empty() {
             return network;
         }
-        (self.lines, self.cleaned.smooth) = off_seams(&self.lines, &network, &seams);
+        let left = off_seams(&self.lines, &network, &seams);
+        self.cleaned.smooth = length(&self.lines) - length(&left);
+        self.lines = left;
         network.without(&seams)
     }
 
@@ -100,16 +104,7 @@ impl Sided {
     fn part(&mut self, network: Network) {
         let mut cut = LineCut::new(network, &self.sites());
         if self.normals.estimated {
-            let parts = |a, b| cut.parts(&self.sites(), a, b);
-            let mut normals = self.normals.normals.clone();
-            parted(&self.points, &self.nearest, &parts, &mut normals);
-            let across = cut.across(&Sites { normals: &normals, ..self.sites() });
-            // Points too near to a line to be of either side have normals of both.
-            let on_line = |n| cut.is_on(&self.sites(), n);
-            let apart = |a, b| on_line(a) || on_line(b) || parts(a, b);
-            let turned = orient_sides(&self.points.positions, &self.nearest, &mut normals, &apart, &across);
-            self.normals.normals = normals;
-            if turned {
+            if self.face(&cut) {
                 cut = cut.again(&self.sites());
             }
             let sites = self.sites();
@@ -117,6 +112,21 @@ impl Sided {
             self.normals.normals = self.normals.normals.par_iter().enumerate().map(mended).collect();
         }
         self.cut = Some(cut);
+    }
+
+    /// Estimates normals again whose neighbours a cut parts, and the signs of all; whether any sign changed.
+    fn face(&mut self, cut: &LineCut) -> bool {
+        let sites = self.sites();
+        let parts = |a, b| cut.parts(&sites, a, b);
+        let mut normals = self.normals.normals.clone();
+        parted(&self.points, &self.nearest, &parts, &mut normals);
+        let across = cut.across(&Sites { normals: &normals, ..sites });
+        // Points too near to a line to be of either side have normals of both.
+        let on_line = |n| cut.is_on(&sites, n);
+        let apart = |a, b| on_line(a) || on_line(b) || parts(a, b);
+        let turned = orient_sides(sites.positions, sites.nearest, &mut normals, &apart, &across);
+        self.normals.normals = normals;
+        turned
     }
 
     /// The points as the graph sees them.

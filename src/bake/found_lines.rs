@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::noise::input_noise;
 use super::options::{Edges, Options};
 use super::{feature_lines, input_lines, model_error};
 use crate::error::Result;
@@ -24,7 +25,8 @@ const CORNER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 pub fn found_lines(input: &Input, options: &Options) -> Result<Polylines> {
     let frame = input.cloud().frame;
     let max_error = model_error(options, input)?;
-    let found = feature_lines(input, &Edges::Auto, options.edge_angle, max_error)?.unwrap_or_default();
+    let found = feature_lines(input, &Edges::Auto, input_noise(input), options.edge_angle, max_error)?
+        .unwrap_or_default();
     let lines = match input {
         Input::Mesh(_) => cornered(&joined(&found)).iter().map(|line| straightened(line)).collect(),
         Input::Cloud(_) => joined(&found),

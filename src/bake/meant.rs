@@ -133,8 +133,12 @@ fn of_cloud<'a>(input: &'a Input, cloud: &Cloud, options: &'a Options, max_error
     let sided = Sided::of(cloud, options.normals.into(), lines, Some(noise))?;
     let Quieted { cloud: smoothed, moved_rms, moved_max } = quieted(cloud, &sided, max_error)?;
     let made = Made::Quiet(Quiet { moved_rms, moved_max, left: self::noise(&smoothed) });
-    // Smoothed on either side of its creases, a cloud shows others where these were lost in the noise.
-    let edges = Cow::Owned(Edges::Given(input_lines(&sided.lines, &cloud.frame)));
+    let edges = match &options.edges {
+        // Smoothed on either side of its creases, a cloud shows others where these were lost in the noise.
+        Edges::Auto => Cow::Owned(Edges::Given(input_lines(&sided.lines, &cloud.frame))),
+        // As they are: what becomes of them is told by their numbers.
+        given => Cow::Borrowed(given),
+    };
     Ok(Meant { input: Cow::Owned(Input::Cloud(smoothed)), edges, made, ..itself })
 }
 

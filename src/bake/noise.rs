@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::patch::Patch;
 use crate::analyse::canonical::order_along;
+use crate::ingest::Input;
 use crate::model::cloud::Cloud;
 
 /// Patches that are looked at, spread evenly along the Morton curve: their medians count, since
@@ -48,6 +49,15 @@ pub fn noise(cloud: &Cloud) -> Option<f64> {
         let shown = WIDE * rms <= radius;
         shown.then_some(noise)
     })
+}
+
+/// That of an input: none for a mesh.
+#[must_use]
+pub fn input_noise(input: &Input) -> Option<f64> {
+    match input {
+        Input::Mesh(_) => None,
+        Input::Cloud(cloud) => noise(cloud),
+    }
 }
 
 /// The points in the order of where they lie and which way they face, whatever their order in the file.

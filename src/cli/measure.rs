@@ -80,7 +80,7 @@ impl Arguments {
         let max_error = asset.max_error * asset.frame.scale() / frame.scale();
         let options = self.options()?;
         let meant = meant(&input, &options, max_error)?;
-        let lines = feature_lines(&meant.input, &meant.edges, self.edge_angle, max_error)?;
+        let lines = feature_lines(&meant.input, &meant.edges, meant.noise, self.edge_angle, max_error)?;
         let lines = lines.as_ref().map(|lines| align::lines(lines, &frame, &asset.frame));
         progress.stage("reference");
         let kept = kept(&meant.input, &meant.edges, meant.noise, &options, max_error)?;

@@ -50,9 +50,15 @@ impl Polylines {
     /// Length of all lines, in input units.
     #[must_use]
     pub fn length(&self) -> f64 {
-        let segments = self.lines.iter().flat_map(|line| line.windows(2));
-        segments.map(|pair| pair[0].distance(pair[1])).fold(0.0, |sum, length| sum + length)
+        length(&self.lines)
     }
+}
+
+/// Length of all of some lines, in their units.
+#[must_use]
+pub fn length(lines: &[Vec<DVec3>]) -> f64 {
+    let segments = lines.iter().flat_map(|line| line.windows(2));
+    segments.map(|pair| pair[0].distance(pair[1])).fold(0.0, |sum, length| sum + length)
 }
 
 #[cfg(test)]

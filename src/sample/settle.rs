@@ -248,8 +248,64 @@ fn mean_color(grower: &Grower, pieces: &[u32]) -> [u8; 3] {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
-    use glam::{DMat3, Vec2Swizzles};
+    use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::cloud_surface::{Lines, cloud_surface};
+    use crate::analyse::planted::{normal, random};
+    use crate::fit::clip::Clips;
+    use crate::fit::pose::Shapes;
+    use crate::model::cloud::Cloud;
+    use crate::sample::budget::Budget;
+    use glam::{DMat3, Vec2Swizzles, Vec3};
+
+    #[test]
+    fn what_a_splat_of_a_cloud_covers_is_not_cut_away_once_stored() {
+        // Two faces at right angles, whose points scatter over their edge by the bound.
+        let bound = 0.01;
+        let places: Vec<Vec3> = (0..4000)
+            .map(|n| {
+                let (x, way) = (random(2 * n), 0.25 * (1.0 + random(2 * n + 1)) + 2.0 * bound * normal(n));
+                let place = if n.is_multiple_of(2) { [x, -way, 0.0] } else { [x, 0.0, -way] };
+                (0.5 * DVec3::from_array(place)).as_vec3()
+            })
+            .collect();
+        let cloud = Cloud { positions: places, ..Cloud::default() };
+        let line = [vec![DVec3::new(-0.5, 0.0, 0.0), DVec3::new(0.5, 0.0, 0.0)]];
+        let surface =
+            cloud_surface(&cloud, NormalSource::Estimate, Lines::Given(&line), None, None).unwrap().surface;
+        // As if files kept the ends of curves to a twentieth of a radian.
+        let coarse = |splat: &Splat| {
+            let angle = |alpha: f64| (20.0 * alpha).round() / 20.0;
+            let stored = |clip: &ClipCurve| ClipCurve {
+                alpha1: angle(clip.alpha1),
+                alpha3: angle(clip.alpha3),
+                ..*clip
+            };
+            Some(Splat { clips: splat.clips.iter().map(stored).collect(), ..splat.clone() })
+        };
+        let grower = Grower {
+            surface: &surface,
+            budget: Budget::new(bound, Clips::Curved),
+            shapes: Shapes::All,
+            open: &[],
+            overhang: 0.0,
+            round: &coarse,
+        };
+        let mut region = Region::new(surface.points.len());
+        let pieces = (0..surface.pieces.len() as u32).step_by(50);
+        let grown: Vec<Candidate> = pieces.filter_map(|piece| grower.grow(piece, &mut region)).collect();
+        let cut = grown.iter().filter(|candidate| !candidate.splat.clips.is_empty());
+        assert!(cut.count() > 20, "few of {} are cut", grown.len());
+        for candidate in grown {
+            let stored = coarse(&candidate.splat).unwrap();
+            for piece in candidate.pieces {
+                let uv = stored.to_local(surface.middle(piece)).truncate();
+                assert!(!stored.clips.iter().any(|clip| clip.cuts(uv, stored.radii)), "{uv}");
+            }
+        }
+    }
 
     #[test]
     fn the_nearest_cylinder_halves_what_is_lost() {

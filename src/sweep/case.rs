@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::plan::Setting;
 use super::schema::{Case, Outcome};
-use crate::bake::noise::noise;
+use crate::bake::noise::input_noise;
 use crate::bake::{Edges, Kept, Options, Silent, feature_lines, kept, model_error};
 use crate::deliver::{deliver, model, surface};
 use crate::error::{Error, Result};
@@ -43,11 +43,11 @@ pub(super) struct Subject<'a> {
 /// Those of [`kept`], and of [`model_error`] for a cloud.
 pub(super) fn without_outliers<'a>(input: &'a Input, edges: &Edges) -> Result<Kept<'a>> {
     let options = Options::default();
-    let (noise, max_error) = match input {
-        Input::Mesh(_) => (None, 0.0),
-        Input::Cloud(cloud) => (noise(cloud), model_error(&options, input)?),
+    let max_error = match input {
+        Input::Mesh(_) => 0.0,
+        Input::Cloud(_) => model_error(&options, input)?,
     };
-    kept(input, edges, noise, &options, max_error)
+    kept(input, edges, input_noise(input), &options, max_error)
 }
 
 impl<'a> Subject<'a> {
@@ -90,7 +90,13 @@ fn outcome(subject: &Subject<'_>, setting: &Setting, frames: usize) -> Result<(O
     let options = Options { edges: subject.edges.clone(), ..setting.options() };
     let delivery = deliver(subject.input, &options, &mut Silent)?;
     let run = report::Run::of_stages(delivery.stages, rayon::current_num_threads());
-    let lines = feature_lines(subject.input, &options.edges, options.edge_angle, delivery.asset.max_error)?;
+    let lines = feature_lines(
+        subject.input,
+        &options.edges,
+        delivery.baked.noise,
+        options.edge_angle,
+        delivery.asset.max_error,
+    )?;
     let measures = measure(&measure::Subject {
         bytes: &delivery.bytes,
         asset: &delivery.asset,

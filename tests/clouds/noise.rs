@@ -1,10 +1,11 @@
 //! Noisy clouds: refused with advice, or smoothed as asked.
 
 use glam::DVec3;
-use qsplat::bake::{Made, MaxError, Options, Silent, meant};
+use qsplat::bake::{Edges, Made, MaxError, Options, Silent, meant};
 use qsplat::deliver::deliver;
 use qsplat::error::Error;
 use qsplat::ingest::Input;
+use qsplat::model::polyline::Polylines;
 
 use super::scene::{Draw, bake, cloud, options};
 
@@ -96,4 +97,32 @@ fn points_strewn_through_space_are_no_noise_that_can_be_smoothed() {
     let refused = deliver(&Input::Cloud(cloud(&wood, &[])), &options, &mut Silent);
     let Err(Error::Usage(text)) = refused else { panic!("not refused") };
     assert!(text.contains("--max-error") && text.contains("do not smooth to a surface"), "{text}");
+}
+
+#[test]
+fn what_became_of_given_lines_is_told_by_their_numbers_also_of_a_smoothed_cloud() {
+    // A roof, whose points scatter by half of what they lie apart.
+    let mut draw = Draw(79);
+    let mut place = || {
+        let mut normal = || (0..12).map(|_| draw.one()).sum::<f64>() - 6.0;
+        let off = 0.01 * DVec3::new(normal(), normal(), normal());
+        let (x, y) = (draw.both(), draw.both());
+        DVec3::new(x, y, -y.abs()) + off
+    };
+    let cloud = cloud(&(0..10_000).map(|_| place()).collect::<Vec<_>>(), &[]);
+    let line = |a: [f64; 3], b: [f64; 3]| vec![DVec3::from_array(a), DVec3::from_array(b)];
+    let seam = line([-0.9, 0.5, -0.5], [0.9, 0.5, -0.5]);
+    let far = line([5.0, 5.0, 5.0], [6.0, 5.0, 5.0]);
+    let crease = line([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+    let lines = Polylines { lines: vec![seam, far, crease] };
+    let edges = Edges::Given(lines.clone());
+    for (denoise, bound) in [(false, 0.05), (true, 0.02)] {
+        let options = Options { edges: edges.clone(), denoise, ..options(MaxError::Absolute(bound)) };
+        let made = bake(&cloud, &options);
+        assert_eq!(matches!(made.baked.made, Made::Quiet(_)), denoise);
+        let matched = made.baked.features.matched.unwrap();
+        assert_eq!(lines.whole(&matched.lost), [1], "smoothed: {denoise}");
+        let smooth = matched.smooth_length * cloud.frame.scale();
+        assert!((smooth - 1.8).abs() < 1e-3, "smoothed: {denoise}: {smooth}");
+    }
 }

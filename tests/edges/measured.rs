@@ -57,7 +57,8 @@ pub fn measured(input: &Input, options: &Options) -> (Delivery, Measured) {
     let asset = &delivery.asset;
     assert_eq!(asset.frame, input.cloud().frame, "a mesh keeps its frame");
     let meant = meant(input, options, asset.max_error).unwrap();
-    let lines = feature_lines(&meant.input, &meant.edges, options.edge_angle, asset.max_error).unwrap();
+    let lines =
+        feature_lines(&meant.input, &meant.edges, meant.noise, options.edge_angle, asset.max_error).unwrap();
     let edge = lines.and_then(|lines| edge(asset, &lines)).map(|edge| edge.max / asset.max_error);
     let errors = surface(asset, &InputSurface::new(model(&meant.input)).unwrap()).unwrap();
     let measured = Measured {
