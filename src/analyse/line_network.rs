@@ -144,8 +144,22 @@ impl Network {
     /// A segment and those that carry it smoothly on beyond one of its nodes, each with the node that it leads to;
     /// without end where the line is closed.
     pub fn onward(&self, segment: u32, node: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
-        std::iter::successors(Some((segment, node)), |&(segment, node)| {
-            let next = self.beyond(segment, node);
+        self.walk(segment, node, Self::beyond)
+    }
+
+    /// The same, on through nodes where more than two segments meet.
+    pub fn through(&self, segment: u32, node: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.walk(segment, node, Self::straight_on)
+    }
+
+    fn walk(
+        &self,
+        segment: u32,
+        node: u32,
+        next: fn(&Self, u32, u32) -> u32,
+    ) -> impl Iterator<Item = (u32, u32)> + '_ {
+        std::iter::successors(Some((segment, node)), move |&(segment, node)| {
+            let next = next(self, segment, node);
             (next != NONE).then(|| (next, self.across(next, node)))
         })
     }
@@ -197,16 +211,30 @@ impl Network {
         if a == node { b } else { a }
     }
 
-    /// The segment that carries another smoothly on beyond one of its nodes; or [`NONE`].
+    /// The segment that carries another smoothly on beyond one of its nodes, where no others meet them; or [`NONE`].
     #[must_use]
     pub fn beyond(&self, segment: u32, node: u32) -> u32 {
-        let &[a, b] = self.at_node.row(node) else { return NONE };
-        let other = if a == segment { b } else { a };
+        if self.at_node.row(node).len() == 2 { self.straight_on(segment, node) } else { NONE }
+    }
+
+    /// The segment that carries another smoothly on beyond one of its nodes, whatever meets them there; or [`NONE`].
+    /// Of all at the node each of the two turns least into the other.
+    fn straight_on(&self, segment: u32, node: u32) -> u32 {
+        let onward = self.smoothest(segment, node);
+        if onward != NONE && self.smoothest(onward, node) == segment { onward } else { NONE }
+    }
+
+    /// Of the others at a node of a segment the one that it turns least into, if it turns smoothly; or [`NONE`].
+    fn smoothest(&self, segment: u32, node: u32) -> u32 {
         let outward = |segment: u32| {
             let along = self.along(segment);
             if self.segments[segment as usize][0] == node { along } else { -along }
         };
-        if outward(segment).dot(outward(other)) < -SMOOTH { other } else { NONE }
+        let own = outward(segment);
+        let others = self.at_node.row(node).iter().filter(|&&other| other != segment);
+        let turns = others.map(|&other| (own.dot(outward(other)), other));
+        let least = turns.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        least.filter(|(turn, _)| *turn < -SMOOTH).map_or(NONE, |(_, other)| other)
     }
 }
 

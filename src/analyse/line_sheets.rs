@@ -165,9 +165,10 @@ fn beside(network: &Network, segment: u32, point: DVec3) -> Beside {
 }
 
 /// Whether a line ends or turns sharply within `reach` of a place on one of its segments, beyond a node of that.
+/// One that others run into goes on.
 fn ends(network: &Network, segment: u32, node: u32, place: DVec3, reach: f64) -> bool {
     let mut passed = 0;
-    for (_, node) in network.onward(segment, node).take(WINDOW) {
+    for (_, node) in network.through(segment, node).take(WINDOW) {
         if network.nodes[node as usize].as_dvec3().distance(place) > reach {
             return false;
         }

@@ -20,6 +20,13 @@ const MISS: f64 = 0.4;
 /// Ends face each other over a gap in one line if both lead to the other within this cosine (37°).
 const FACING: f64 = 0.8;
 
+/// A gap may be this wide, in the lesser size, if the line goes straight on over it within [`STRAIGHT`]: on a
+/// thread half a dozen points may fail in a row.
+const GAP: f64 = 4.0;
+
+/// Within this cosine (15°) the ends at a wide gap lead to each other.
+const STRAIGHT: f64 = 0.966;
+
 /// Ends that run the same way or against each other (sine of 15°) lead to no corner.
 const PARALLEL: f64 = 0.26;
 
@@ -81,7 +88,9 @@ impl End {
         let length = way.length();
         let lead = way.dot(self.outward).min(-way.dot(other.outward));
         let apart = self.line != other.line || self.places >= LOOP;
-        apart && length > 0.0 && lead >= FACING * length && length <= AHEAD * self.size.min(other.size)
+        let size = self.size.min(other.size);
+        let near = |reach: f64, cosine: f64| length <= reach * size && lead >= cosine * length;
+        apart && length > 0.0 && (near(AHEAD, FACING) || near(GAP, STRAIGHT))
     }
 
     /// Whether a place is where the line may go on to.
@@ -153,7 +162,12 @@ fn gaps(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
     let facing: Vec<Option<usize>> = (0..ends.len()).map(facing).collect();
     let mutual = facing.iter().enumerate().filter_map(|(n, &other)| Some((n, other?)));
     let mutual = mutual.filter(|&(n, other)| n < other && facing[other] == Some(n));
-    Ok(mutual.map(|(n, other)| (0.5 * (ends[n].place + ends[other].place), vec![n, other])).collect())
+    Ok(mutual.map(|(n, other)| (between(&ends[n], &ends[other]), vec![n, other])).collect())
+}
+
+/// The middle of the cubic that leads from one end to another as both do (Hermite's).
+fn between(a: &End, b: &End) -> DVec3 {
+    0.5 * (a.place + b.place) + 0.125 * a.place.distance(b.place) * (a.outward + b.outward)
 }
 
 /// Where ends meet, and which do.
@@ -226,4 +240,41 @@ fn run_into(lines: &[Line], loose: &[End]) -> Result<Vec<(End, DVec3)>> {
         nearest.map(|(_, place)| (*end, place))
     };
     Ok(loose.iter().filter_map(hit).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// A line along a circle of radius 12 about the origin, from one angle to another, in degrees.
+    fn arc(from: f64, to: f64) -> Line {
+        let at = |n: u32| {
+            let (sin, cos) = libm::sincos((from + (to - from) * f64::from(n) / 60.0).to_radians());
+            DVec3::new(12.0 * cos, 12.0 * sin, 0.0)
+        };
+        Line { places: (0..=60).map(at).collect(), closed: false, size: 1.0 }
+    }
+
+    #[test]
+    fn wide_gaps_are_bridged_where_the_line_goes_straight_on() {
+        // Of 1.7, 3.8 and 5.2 sizes.
+        for (degrees, met) in [(8.0, 2), (18.0, 2), (25.0, 0)] {
+            let mut lines = [arc(0.0, 90.0), arc(90.0 + degrees, 180.0 + degrees)];
+            assert_eq!(join(&mut lines).unwrap(), [[0, met], [met, 0]], "{degrees}°");
+            if met > 0 {
+                let place = *lines[0].places.last().unwrap();
+                // The middle of the wider gap's chord is off by 0.15.
+                assert!((place.length() - 12.0).abs() < 0.06, "{degrees}°: {place} is off the circle");
+                assert_eq!(lines[1].places[0], place);
+            }
+        }
+        // As wide as the second of these, to a line beside the first.
+        let mut lines = [arc(0.0, 90.0), arc(108.0, 198.0)];
+        for place in &mut lines[1].places {
+            *place += 1.2 * place.normalize();
+        }
+        assert_eq!(join(&mut lines).unwrap(), [[0, 0]; 2]);
+    }
 }
