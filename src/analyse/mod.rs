@@ -15,6 +15,7 @@ pub mod cloud_normals;
 pub mod cloud_surface;
 pub mod creases;
 mod curved;
+pub mod detours;
 pub mod distinct;
 pub mod doubled;
 mod edge_paths;
