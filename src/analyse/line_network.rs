@@ -17,6 +17,10 @@ const TURN: f64 = 0.966;
 /// A line goes smoothly on through a node where two segments meet within this cosine (30°).
 const SMOOTH: f64 = 0.866;
 
+/// Where more segments than this meet, none carries another on: corners of models have up to twelve, and the work at
+/// each stays bounded.
+const CROWD: usize = 12;
+
 /// A line farther than this many spacings from the cloud touches no surface.
 const OFF: f64 = 3.0;
 
@@ -229,6 +233,9 @@ impl Network {
     /// The segment that carries another smoothly on beyond one of its nodes, whatever meets them there; or [`NONE`].
     /// Of all at the node each of the two turns least into the other.
     fn straight_on(&self, segment: u32, node: u32) -> u32 {
+        if self.at_node.row(node).len() > CROWD {
+            return NONE;
+        }
         let onward = self.smoothest(segment, node);
         if onward != NONE && self.smoothest(onward, node) == segment { onward } else { NONE }
     }
@@ -286,4 +293,34 @@ fn halve(
     }
     halve(a, middle, halvings - 1, near, pieces);
     halve(middle, b, halvings - 1, near, pieces);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_lines_that_meet_the_straightest_go_on_through_each_other() {
+        let ray = |degrees: f64| {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            [Vec3::ZERO, DVec3::new(cos, sin, 0.0).as_vec3()]
+        };
+        // Each leads on to the one after it, where any does.
+        for (rays, pairs) in [
+            (vec![0.0, 180.0], 1),
+            (vec![0.0, 130.0], 0),
+            (vec![0.0, 90.0, 180.0], 1),
+            (vec![0.0, 170.0, 195.0], 1),
+            (vec![0.0, 90.0, 175.0, 265.0], 2),
+            ((0..13).map(|n| 27.0 * f64::from(n)).collect(), 0),
+        ] {
+            let network = Network::of_pieces(&rays.iter().map(|&degrees| ray(degrees)).collect::<Vec<_>>());
+            let center = network.nodes.iter().zip(0..).find(|(node, _)| **node == Vec3::ZERO).map(|(_, n)| n);
+            let segments = 0..network.segments.len() as u32;
+            let on: Vec<u32> = segments.map(|n| network.straight_on(n, center.unwrap_or(NONE))).collect();
+            assert_eq!(on.iter().filter(|&&next| next != NONE).count(), 2 * pairs, "{rays:?}");
+            let back = |(n, &next): (usize, &u32)| next == NONE || on[next as usize] == n as u32;
+            assert!(on.iter().enumerate().all(back), "{rays:?}: {on:?}");
+        }
+    }
 }
