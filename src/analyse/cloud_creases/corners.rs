@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
+use super::LENGTHS;
 use super::lines::Line;
 use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
@@ -20,8 +21,8 @@ const MISS: f64 = 0.4;
 /// Ends face each other over a gap in one line if both lead to the other within this cosine (37°).
 const FACING: f64 = 0.8;
 
-/// A gap may be this wide, in the lesser size, if the line goes straight on over it within [`STRAIGHT`]: on a
-/// thread half a dozen points may fail in a row.
+/// A gap may be this wide, in the lesser size, if either line would stand by itself and they go straight on over
+/// it within [`STRAIGHT`]: on a thread half a dozen points may fail in a row. Two short ones may be bumps in a row.
 const GAP: f64 = 4.0;
 
 /// Within this cosine (15°) the ends at a wide gap lead to each other.
@@ -62,6 +63,8 @@ struct End {
     size: f64,
     /// How many places its line has.
     places: usize,
+    /// Whether its line is long enough to be kept whatever its ends do.
+    stands: bool,
 }
 
 impl End {
@@ -79,6 +82,7 @@ impl End {
             outward: (place - before).try_normalize()?,
             size: of.size,
             places: count,
+            stands: of.length() >= LENGTHS[2] * of.size,
         })
     }
 
@@ -90,7 +94,8 @@ impl End {
         let apart = self.line != other.line || self.places >= LOOP;
         let size = self.size.min(other.size);
         let near = |reach: f64, cosine: f64| length <= reach * size && lead >= cosine * length;
-        apart && length > 0.0 && (near(AHEAD, FACING) || near(GAP, STRAIGHT))
+        let wide = self.stands || other.stands;
+        apart && length > 0.0 && (near(AHEAD, FACING) || (wide && near(GAP, STRAIGHT)))
     }
 
     /// Whether a place is where the line may go on to.
@@ -275,6 +280,9 @@ mod tests {
         for place in &mut lines[1].places {
             *place += 1.2 * place.normalize();
         }
+        assert_eq!(join(&mut lines).unwrap(), [[0, 0]; 2]);
+        // And between lines too short to be any by themselves.
+        let mut lines = [arc(70.0, 90.0), arc(108.0, 128.0)];
         assert_eq!(join(&mut lines).unwrap(), [[0, 0]; 2]);
     }
 }
