@@ -305,7 +305,7 @@ mod tests {
             let (sin, cos) = libm::sincos(degrees.to_radians());
             [Vec3::ZERO, DVec3::new(cos, sin, 0.0).as_vec3()]
         };
-        // Each leads on to the one after it, where any does.
+        // Rays at some angles, and how many pairs of them go on through each other.
         for (rays, pairs) in [
             (vec![0.0, 180.0], 1),
             (vec![0.0, 130.0], 0),

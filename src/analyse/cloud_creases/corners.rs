@@ -281,8 +281,10 @@ mod tests {
             *place += 1.2 * place.normalize();
         }
         assert_eq!(join(&mut lines).unwrap(), [[0, 0]; 2]);
-        // And between lines too short to be any by themselves.
-        let mut lines = [arc(70.0, 90.0), arc(108.0, 128.0)];
-        assert_eq!(join(&mut lines).unwrap(), [[0, 0]; 2]);
+        // And between lines of which neither, or one, is long enough to be one by itself.
+        for (from, met) in [(70.0, 0), (0.0, 2)] {
+            let mut lines = [arc(from, 90.0), arc(108.0, 128.0)];
+            assert_eq!(join(&mut lines).unwrap(), [[0, met], [met, 0]], "from {from}°");
+        }
     }
 }
