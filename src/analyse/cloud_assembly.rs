@@ -66,7 +66,7 @@ impl<'a> Assembly<'a> {
             margin: rows().map(|row| self.margin(row)).chain(on_lines.iter().map(|_| 0.0)).collect(),
             border_prev: inverse(&border_next),
             border_next,
-            carried: Vec::new(),
+            carried: self.carried(),
         }
     }
 
@@ -137,6 +137,16 @@ impl<'a> Assembly<'a> {
             next[(self.count() + from) as usize] = self.count() + to;
         }
         next
+    }
+
+    /// For each row whether the side of a border that starts there only carries a line on beyond its end.
+    fn carried(&self) -> Vec<bool> {
+        let Some(cut) = self.cut else { return Vec::new() };
+        let mut carried = vec![false; self.kept.len() + cut.points.len()];
+        for ((from, _), is_carried) in cut.sides().zip(cut.carried()) {
+            carried[(self.count() + from) as usize] = is_carried;
+        }
+        carried
     }
 
     fn mean_colors(&self) -> Vec<[u8; 3]> {

@@ -299,6 +299,11 @@ impl LineCut {
         self.borders.iter().map(|border| (border.points[0], border.points[1]))
     }
 
+    /// For each of [`Self::sides`], whether it only carries a line on beyond its end.
+    pub fn carried(&self) -> impl Iterator<Item = bool> + '_ {
+        self.borders.iter().map(|border| self.network.is_carried(border.segment))
+    }
+
     /// How far a point beside a line must reach to fill the surface up to it, model units; 0
     /// for other points.
     #[must_use]
@@ -349,7 +354,8 @@ impl LineCut {
     /// How many segments some sheet ends at, and their length, model units.
     #[must_use]
     pub fn found(&self) -> (usize, f64) {
-        let found = (0_u32..).zip(&self.sheets.of).filter(|(_, sheets)| !sheets.is_empty());
+        let lines = (0_u32..).zip(&self.sheets.of).filter(|&(segment, _)| !self.network.is_carried(segment));
+        let found = lines.filter(|(_, sheets)| !sheets.is_empty());
         let lengths = found.map(|(segment, _)| self.network.length(segment));
         lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length))
     }

@@ -52,6 +52,8 @@ pub struct Network {
     pub far: Vec<u32>,
     /// Length of the lines that ran closely beside others and gave way to them, model units.
     pub merged: f64,
+    /// Segments that only carry lines on beyond their ends, ascending.
+    pub carried: Vec<u32>,
 }
 
 /// Segments that go smoothly on, one to the next.
@@ -207,14 +209,41 @@ impl Network {
         Strand { segments, closed, length }
     }
 
+    /// The network and pieces that carry its lines on.
+    #[must_use]
+    pub fn with_carried(self, pieces: &[[Vec3; 2]]) -> Self {
+        let all = Self::of_pieces(&[self.pieces(|_| true).as_slice(), pieces].concat());
+        let ends = |ends: &[u32; 2]| ends.map(|node| all.nodes[node as usize]);
+        let carried = (0_u32..).zip(&all.segments).filter(|(_, nodes)| self.find(ends(nodes)).is_none());
+        Self { carried: carried.map(|(n, _)| n).collect(), far: self.far, merged: self.merged, ..all }
+    }
+
+    /// The segment between two places.
+    #[must_use]
+    pub fn find(&self, ends: [Vec3; 2]) -> Option<u32> {
+        let mut ends = ends.map(canonical::key);
+        ends.sort_unstable();
+        let key = |node: u32| canonical::key(self.nodes[node as usize]);
+        // They are sorted by the keys of their ends.
+        self.segments.binary_search_by(|own| own.map(key).cmp(&ends)).ok().map(|n| n as u32)
+    }
+
+    /// Whether a segment only carries a line on beyond its end.
+    #[must_use]
+    pub fn is_carried(&self, segment: u32) -> bool {
+        self.carried.binary_search(&segment).is_ok()
+    }
+
+    /// The places of the ends of some segments.
+    fn pieces(&self, wanted: impl Fn(u32) -> bool) -> Vec<[Vec3; 2]> {
+        let segments = (0_u32..).zip(&self.segments).filter(|&(n, _)| wanted(n));
+        segments.map(|(_, ends)| ends.map(|node| self.nodes[node as usize])).collect()
+    }
+
     /// The network without some of its segments, which are numbered ascending.
     #[must_use]
     pub fn without(self, segments: &[u32]) -> Self {
-        let is_left = |segment: &u32| segments.binary_search(segment).is_err();
-        let left = (0..self.segments.len() as u32).filter(is_left);
-        let pieces: Vec<[Vec3; 2]> = left
-            .map(|segment| self.segments[segment as usize].map(|node| self.nodes[node as usize]))
-            .collect();
+        let pieces = self.pieces(|segment| segments.binary_search(&segment).is_err());
         Self { far: self.far, merged: self.merged, ..Self::of_pieces(&pieces) }
     }
 

@@ -10,6 +10,7 @@ pub mod canonical;
 pub mod chains;
 mod cloud_assembly;
 pub mod cloud_creases;
+mod cloud_ends;
 pub mod cloud_graph;
 pub mod cloud_normals;
 pub mod cloud_surface;

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::cloud_creases::{Sought, found};
+use super::cloud_ends::carried_on;
 use super::cloud_graph::Sites;
 use super::cloud_normals::{NormalSource, Normals, normals, parted};
 use super::distinct::{Distinct, distinct};
@@ -75,7 +76,6 @@ impl Sided {
             Lines::Found(sought) => found(&points.positions, &search, &nearest, &spacing, &sought, noise)?,
         };
         let mut network = Network::new(&lines, &search, &points.positions, &spacing);
-        drop(search);
         let cleaned = Cleaned { far: std::mem::take(&mut network.far), merged: network.merged, smooth: 0.0 };
         let noise = noise.unwrap_or_default();
         let mut sided = Self { points, nearest, spacing, normals, lines, cut: None, cleaned, noise };
@@ -83,6 +83,8 @@ impl Sided {
             network = sided.without_seams(network);
         }
         if !network.segments.is_empty() {
+            let network = carried_on(network, &search, &sided.sites());
+            drop(search);
             sided.part(network);
         }
         Ok(sided)
