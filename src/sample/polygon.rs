@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::backing::{Below, between_cuts, place_count, rim_places};
 use super::budget::Budget;
+use super::disc;
 use super::grow::Grower;
 use super::outline::border_sides;
 use super::region::{Member, Region};
@@ -47,6 +48,8 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
             let does = |less: &Splat| triangle(less).is_inside() && !triangle(less).strays(&less.clips);
             splat = less.find(does).unwrap_or(splat);
         }
+    } else {
+        splat = disc::cut(grower, splat, piece, region);
     }
     splat.color = surface.colors.get(corners[0] as usize).copied().unwrap_or([u8::MAX; 3]);
     // What ends at a triangle's own sides is cut by itself, whatever lies across.

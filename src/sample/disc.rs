@@ -1,0 +1,185 @@
+//! The disc of last resort around one point of a cloud, cut along the lines that it reaches.
+//!
+//! It reaches as far as its point stands for the surface, which beside a line is too far across. No curve could be
+//! fitted there, or there would be a better splat; chords along some of the line do where the surface keeps to one
+//! side of them.
+
+use glam::DVec2;
+
+use super::grow::Grower;
+use super::outline::border_sides;
+use super::region::{Member, Region};
+use crate::fit::clip::{self, Care};
+use crate::fit::pose::Pose;
+use crate::model::clip_curve::{ClipCurve, Conic};
+use crate::model::polyline::nearest_on;
+use crate::model::splat::Splat;
+
+/// More chords than this cost more than what they cut off is worth.
+const MOST_CHORDS: usize = 4;
+
+/// The disc over a piece of a cloud with chords along the lines around, none of which cuts anything of the surface that
+/// the disc reaches; without them where rounding would let them cut the point itself.
+#[must_use]
+pub fn cut(grower: &Grower, disc: Splat, piece: u32, region: &mut Region) -> Splat {
+    let pose = Pose { center: disc.center, axes: disc.axes };
+    let seeds = grower.surface.pieces[piece as usize];
+    if !region.gather(grower.surface, &pose, disc.radii, &seeds) {
+        return disc;
+    }
+    let clips = Lines { grower, pose, radii: disc.radii, region }.chords();
+    let splat = Splat { clips, ..disc.clone() };
+    let place = splat.to_local(grower.surface.middle(piece)).truncate();
+    let keeps = |stored: Splat| !stored.clips.iter().any(|clip| clip.cuts(place, stored.radii));
+    if (grower.round)(&splat).is_some_and(keeps) { splat } else { disc }
+}
+
+/// The lines that a disc reaches.
+struct Lines<'a> {
+    grower: &'a Grower<'a>,
+    pose: Pose,
+    radii: DVec2,
+    region: &'a Region,
+}
+
+impl Lines<'_> {
+    /// Chords along them, the nearest first, as long as some line is not cut along.
+    fn chords(&self) -> Vec<ClipCurve> {
+        let (mut clips, mut conics) = (Vec::new(), Vec::<Conic>::new());
+        for side in self.sides() {
+            if clips.len() < MOST_CHORDS
+                && !conics.iter().any(|conic| conic.cuts(self.across(side)))
+                && let Some((clip, conic)) = self.chord(side)
+            {
+                clips.push(clip);
+                conics.push(conic);
+            }
+        }
+        clips
+    }
+
+    /// Sides of lines within the disc, the nearest first.
+    fn sides(&self) -> Vec<[DVec2; 2]> {
+        let flat = |point: u32| self.pose.to_local(self.grower.surface.point(point)).truncate();
+        let ends = border_sides(self.grower.surface, self.region).into_iter();
+        let ends = ends.filter(|&(from, _)| !self.grower.surface.is_carried(from));
+        let sides = ends.map(|(from, to)| [flat(from), flat(to)]);
+        let off =
+            |[a, b]: [DVec2; 2]| nearest_on(a.extend(0.0), b.extend(0.0), DVec2::ZERO.extend(0.0)).length();
+        let mut near: Vec<(f64, [DVec2; 2])> = sides.map(|side| (off(side), side)).collect();
+        near.retain(|(off, _)| *off < self.radii.min_element());
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        near.into_iter().map(|(_, side)| side).collect()
+    }
+
+    /// A place just across a side.
+    fn across(&self, [a, b]: [DVec2; 2]) -> DVec2 {
+        let tolerance = &self.grower.budget.clip;
+        a.midpoint(b) - (b - a).perp().normalize_or_zero() * (tolerance.outset + 2.0 * tolerance.miss)
+    }
+
+    /// A chord along a side; `None` if it would cut any of the surface.
+    fn chord(&self, [a, b]: [DVec2; 2]) -> Option<(ClipCurve, Conic)> {
+        let beyond = 2.0 * self.radii.max_element() * (b - a).normalize_or_zero();
+        let line = [a - beyond, b + beyond];
+        let clips = clip::fit(&line, false, self.radii, &self.grower.budget.clip, Care::Nearest)?;
+        let [clip] = clips.as_slice() else { return None };
+        let conic = clip.conic(self.radii);
+        let is_kept = |member: &Member| !conic.cuts(member.local.truncate());
+        self.region.members.iter().all(is_kept).then_some((*clip, conic))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::budget::Budget;
+    use super::super::polygon;
+    use super::*;
+    use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::cloud_surface::{Lines as Given, cloud_surface};
+    use crate::analyse::planted::random;
+    use crate::fit::clip::Clips;
+    use crate::fit::pose::Shapes;
+    use crate::model::cloud::Cloud;
+    use glam::{DVec3, Vec3};
+
+    const BOUND: f64 = 0.002;
+
+    /// The discs over the points of a cloud, each with its point, with its edges given.
+    fn discs(positions: Vec<Vec3>, edges: &[Vec<DVec3>]) -> Vec<(Vec3, Splat)> {
+        let cloud = Cloud { positions, ..Cloud::default() };
+        let (source, given) = (NormalSource::Estimate, Given::Given(edges));
+        let surface = cloud_surface(&cloud, source, given, None, None).unwrap().surface;
+        let grower = Grower {
+            surface: &surface,
+            budget: Budget::new(BOUND, Clips::Curved),
+            shapes: Shapes::All,
+            open: &[],
+            overhang: 0.0,
+            round: &|splat| Some(splat.clone()),
+        };
+        let mut region = Region::new(surface.points.len());
+        let mut over = |piece: u32| polygon::over(&grower, piece, &mut region).unwrap().splat;
+        (0..surface.pieces.len() as u32).map(|piece| (surface.middle(piece).as_vec3(), over(piece))).collect()
+    }
+
+    fn is_cut(splat: &Splat, uv: DVec2) -> bool {
+        splat.clips.iter().any(|clip| clip.cuts(uv, splat.radii))
+    }
+
+    #[test]
+    fn discs_end_where_faces_do() {
+        // Three squares that meet along x, y and z.
+        let place = |n: u64| {
+            let (a, b) = (0.25 + 0.25 * random(2 * n), 0.25 + 0.25 * random(2 * n + 1));
+            [DVec3::new(a, b, 0.0), DVec3::new(0.0, a, b), DVec3::new(b, 0.0, a)][(n % 3) as usize].as_vec3()
+        };
+        let edges = DVec3::AXES.map(|axis| vec![DVec3::ZERO, 0.5 * axis]);
+        let mut reached = [0.0_f64; 2];
+        for (_, splat) in
+            discs((0..9000).map(place).collect(), &edges).iter().filter(|(at, _)| at.max_element() < 0.4)
+        {
+            for n in 0..64 {
+                let (sin, cos) = libm::sincos(0.1 * f64::from(n));
+                let rim = DVec2::new(cos, sin) * splat.radii;
+                let beyond = -(splat.center + splat.axes * rim.extend(0.0)).min_element() / BOUND;
+                reached[0] = reached[0].max(beyond);
+                if !is_cut(splat, rim) {
+                    reached[1] = reached[1].max(beyond);
+                }
+            }
+        }
+        assert!(reached[0] > 2.0 && reached[1] < 0.6, "{reached:?} bounds beyond, uncut and cut");
+    }
+
+    #[test]
+    fn nothing_of_a_face_is_cut_away_at_a_corner_that_points_into_it() {
+        // A floor with a step up from a quarter of it.
+        let place = |n: u64| {
+            let (a, b) = (0.5 * random(2 * n), 0.5 * random(2 * n + 1));
+            let height = 0.25 + 0.5 * b;
+            match n % 4 {
+                0 => DVec3::new(a.abs(), 0.0, height),
+                1 => DVec3::new(0.0, a.abs(), height),
+                _ if a > 0.0 && b > 0.0 => DVec3::new(a, b, 0.5),
+                _ => DVec3::new(a, b, 0.0),
+            }
+            .as_vec3()
+        };
+        let edges = [DVec3::X, DVec3::Y].map(|axis| vec![DVec3::ZERO, 0.5 * axis]);
+        let discs = discs((0..12_000).map(place).collect(), &edges);
+        let floor: Vec<&(Vec3, Splat)> = discs.iter().filter(|(at, _)| at.z == 0.0).collect();
+        let (mut cut, mut around) = (0, 0);
+        for (at, splat) in floor.iter().filter(|(at, _)| at.truncate().abs().max_element() < 0.1) {
+            cut += u32::from(!splat.clips.is_empty());
+            for (other, _) in floor.iter().filter(|(other, _)| f64::from(other.distance(*at)) < splat.radii.x)
+            {
+                assert!(!is_cut(splat, splat.to_local(other.as_dvec3()).truncate()), "{other} over {at}");
+                around += 1;
+            }
+        }
+        assert!(cut > 5 && around > 500, "{cut} are cut, with {around} points around");
+    }
+}
