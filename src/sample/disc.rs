@@ -58,7 +58,7 @@ impl Lines<'_> {
         clips
     }
 
-    /// Sides of lines within the disc, the nearest first.
+    /// Sides of lines beyond which the disc goes farther than cuts may, the nearest first.
     fn sides(&self) -> Vec<[DVec2; 2]> {
         let flat = |point: u32| self.pose.to_local(self.grower.surface.point(point)).truncate();
         let ends = border_sides(self.grower.surface, self.region).into_iter();
@@ -67,7 +67,7 @@ impl Lines<'_> {
         let off =
             |[a, b]: [DVec2; 2]| nearest_on(a.extend(0.0), b.extend(0.0), DVec2::ZERO.extend(0.0)).length();
         let mut near: Vec<(f64, [DVec2; 2])> = sides.map(|side| (off(side), side)).collect();
-        near.retain(|(off, _)| *off < self.radii.min_element());
+        near.retain(|(off, _)| off + self.grower.budget.clip.edge < self.radii.min_element());
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         near.into_iter().map(|(_, side)| side).collect()
     }

@@ -21,7 +21,7 @@ use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
 use crate::model::triangle::to_triangle;
 
-/// The splat over one piece: a triangle cut out of a plane, or the disc of a single point.
+/// The splat over one piece: a triangle cut out of a plane, or the disc of a single point, cut as [`super::disc`] tells.
 ///
 /// A side is cut along where the surface ends or folds away behind it: elsewhere the ellipse may go
 /// on over the neighbours. `None` if it cannot be stored: too small beside the budget, or too large.
