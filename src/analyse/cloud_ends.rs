@@ -52,6 +52,10 @@ const AROUND: usize = 32;
 /// Fewer points than this on one side of a line say nothing of it.
 const FEWEST: usize = 4;
 
+/// Nor do points whose distances from the line vary by less than this share of their mean square: those strewn evenly
+/// do by a quarter.
+const SPREAD: f64 = 0.01;
+
 /// A place on a surface, and the normal and spacing of the points around it.
 struct Footing {
     place: DVec3,
@@ -134,13 +138,14 @@ fn height(profile: &[(f64, f64)]) -> f64 {
     }
 }
 
-/// Where the line of least squares through some places meets zero; `None` of few.
+/// Where the line of least squares through some places meets zero; `None` of few, and of those at one distance.
 fn meets(places: &[(f64, f64)]) -> Option<f64> {
     let count = places.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| places.iter().map(of).sum::<f64>() / count;
     let (x, y) = (mean(|place| place.0), mean(|place| place.1));
-    let (xx, xy) = (mean(|place| place.0 * place.0) - x * x, mean(|place| place.0 * place.1) - x * y);
-    (places.len() >= FEWEST && xx > 0.0).then(|| y - xy / xx * x)
+    let square = mean(|place| place.0 * place.0);
+    let (xx, xy) = (square - x * x, mean(|place| place.0 * place.1) - x * y);
+    (places.len() >= FEWEST && xx > SPREAD * square).then(|| y - xy / xx * x)
 }
 
 /// The pieces of paths as far as each keeps apart from those before it.
@@ -251,5 +256,8 @@ mod tests {
         assert!((height(&(-9..10).map(roof).collect::<Vec<_>>()) - 0.3).abs() < 1e-12);
         let few = [(0.1, 1.0), (0.2, 2.0), (-0.1, 3.0)];
         assert!((height(&few) - 2.0).abs() < 1e-12, "where one side is not seen the mean");
+        let row = (0..8).map(|n| (1.0 + 1e-9 * f64::from(n), f64::from(n)));
+        let rows: Vec<(f64, f64)> = row.flat_map(|(x, y)| [(x, y), (-x, y)]).collect();
+        assert!((height(&rows) - 3.5).abs() < 1e-12, "of points at one distance the mean");
     }
 }

@@ -240,7 +240,7 @@ impl Network {
         segments.map(|(_, ends)| ends.map(|node| self.nodes[node as usize])).collect()
     }
 
-    /// The network without some of its segments, which are numbered ascending.
+    /// The network without some of its segments, which are numbered ascending; none carries it on yet.
     #[must_use]
     pub fn without(self, segments: &[u32]) -> Self {
         let pieces = self.pieces(|segment| segments.binary_search(&segment).is_err());

@@ -6,7 +6,7 @@ pub mod backing;
 pub mod budget;
 pub mod candidates;
 pub mod cover;
-mod disc;
+pub mod disc;
 pub mod edge_cases;
 pub mod enclose;
 mod exchange;
