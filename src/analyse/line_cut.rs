@@ -367,8 +367,8 @@ mod tests {
 
     use super::*;
     use crate::analyse::canonical::mix;
-    use crate::analyse::nearest::{Nearest, Search, listed, spacing};
-    use crate::analyse::planted::{normal, random};
+    use crate::analyse::nearest::listed;
+    use crate::analyse::planted::{lay, normal, random, side_by_side};
 
     /// Points strewn over the faces of the cube `[-1, 1]³ / 2`, with their normals.
     fn cube(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
@@ -387,23 +387,6 @@ mod tests {
         let corner = |n: usize| DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64) - 0.5;
         let ends = (0..8).flat_map(|n| [1, 2, 4].map(|bit| (n, n | bit)));
         ends.filter(|(a, b)| a != b).map(|(a, b)| vec![corner(a), corner(b)]).collect()
-    }
-
-    fn lay(points: &[Vec3]) -> (Search, Nearest, Vec<f32>) {
-        let search = Search::new(points).unwrap();
-        let nearest = search.nearest();
-        let spacing = spacing(points, &nearest);
-        (search, nearest, spacing)
-    }
-
-    /// Points without noise.
-    fn side_by_side<'a>(
-        positions: &'a [Vec3],
-        normals: &'a [Vec3],
-        nearest: &'a Nearest,
-        spacing: &'a [f32],
-    ) -> Sites<'a> {
-        Sites { positions, normals, spacing, nearest, noise: 0.0 }
     }
 
     /// Points strewn over an L of height 1: the square `[-1, 1]²` without its quarter of positive coordinates.

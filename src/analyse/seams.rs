@@ -105,36 +105,21 @@ pub fn off_seams(lines: &[Vec<DVec3>], network: &Network, seams: &[u32]) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
-
     use glam::Vec3;
 
     use super::*;
-    use crate::analyse::nearest::{Search, spacing};
-    use crate::analyse::planted::{normal, random};
+    use crate::analyse::planted::{ROOF_STEP, fall, lay, roof, side_by_side};
     use crate::model::polyline::length;
-
-    /// How far points lie apart.
-    const STEP: f64 = 0.02;
 
     /// The length of a seam and of a crease of so many degrees that it runs onto, and of those parts of them that are
     /// taken for seams; points scatter by `noise`.
     fn told(degrees: f64, noise: f64) -> [[f64; 2]; 2] {
         // A roof along x, and a seam down its far side.
-        let fall = |y: f64| -y.abs() * libm::tan(0.5 * degrees.to_radians());
-        let points: Vec<Vec3> = (0..10_000)
-            .map(|n| {
-                let (x, y) = (random(2 * n), random(2 * n + 1));
-                DVec3::new(x, y, fall(y) + noise * normal(n)).as_vec3()
-            })
-            .collect();
-        let search = Search::new(&points).unwrap();
-        let nearest = search.nearest();
-        let spacing = spacing(&points, &nearest);
+        let points = roof(degrees, noise);
+        let (search, nearest, spacing) = lay(&points);
         let normals = vec![Vec3::Z; points.len()];
-        let sites =
-            Sites { positions: &points, normals: &normals, spacing: &spacing, nearest: &nearest, noise };
-        let at = |x: f64, y: f64| DVec3::new(x, y, fall(y));
+        let sites = Sites { noise, ..side_by_side(&points, &normals, &nearest, &spacing) };
+        let at = |x: f64, y: f64| DVec3::new(x, y, fall(degrees, y));
         let crease = [at(-1.0, 0.0), at(1.0, 0.0)];
         let seam = [at(0.1, 0.0), at(0.1, 1.0)];
         let lines = [vec![crease[0], at(0.1, 0.0), crease[1]], seam.to_vec()];
@@ -154,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_seam_parts_nothing_and_a_crease_does() {
-        for (degrees, noise) in [(60.0, 0.0), (12.0, 0.0), (60.0, 0.5 * STEP), (20.0, 0.5 * STEP)] {
+        for (degrees, noise) in [(60.0, 0.0), (12.0, 0.0), (60.0, 0.5 * ROOF_STEP), (20.0, 0.5 * ROOF_STEP)] {
             let [crease, seam] = told(degrees, noise);
             assert!(crease[1] == 0.0, "{degrees}°: {crease:?}");
             assert!((seam[0] - seam[1]).abs() < 1e-9, "{degrees}°: {seam:?}");

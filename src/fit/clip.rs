@@ -104,6 +104,14 @@ pub fn fit(
     Some(clips)
 }
 
+/// As [`fit`], of the straight line through two places, from outside the ellipse to outside: the chord along it, or
+/// nothing where it passes the ellipse by.
+#[must_use]
+pub fn along([a, b]: [DVec2; 2], radii: DVec2, tolerance: &ClipTolerance) -> Option<Vec<ClipCurve>> {
+    let beyond = 2.0 * radii.max_element() * (b - a).normalize_or_zero();
+    fit(&[a - beyond, b + beyond], false, radii, tolerance, Care::Nearest)
+}
+
 fn cut_run(run: &Run, radii: DVec2, tolerance: &ClipTolerance, care: Care) -> Option<Vec<ClipCurve>> {
     if !run.closed
         && let Some(clip) = one_curve(&run.points, radii, tolerance, care)

@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::grow::Grower;
 use super::outline::border_sides;
 use super::region::{Member, Region};
-use crate::fit::clip::{self, Care};
+use crate::fit::clip;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::polyline::nearest_on;
@@ -17,6 +17,9 @@ use crate::model::splat::Splat;
 
 /// More chords than this cost more than what they cut off is worth.
 const MOST_CHORDS: usize = 4;
+
+/// A side is cut along already if a place so many misses past the cut along it is cut away: lines wander a little.
+const PAST: f64 = 2.0;
 
 /// The disc over a piece of a cloud with chords along the lines around, none of which cuts anything of the surface that
 /// the disc reaches; without them where rounding would let them cut the point itself.
@@ -75,18 +78,15 @@ impl Lines<'_> {
     /// A place just across a side.
     fn across(&self, [a, b]: [DVec2; 2]) -> DVec2 {
         let tolerance = &self.grower.budget.clip;
-        a.midpoint(b) - (b - a).perp().normalize_or_zero() * (tolerance.outset + 2.0 * tolerance.miss)
+        a.midpoint(b) - (b - a).perp().normalize_or_zero() * (tolerance.outset + PAST * tolerance.miss)
     }
 
-    /// A chord along a side; `None` if it would cut any of the surface.
-    fn chord(&self, [a, b]: [DVec2; 2]) -> Option<(ClipCurve, Conic)> {
-        let beyond = 2.0 * self.radii.max_element() * (b - a).normalize_or_zero();
-        let line = [a - beyond, b + beyond];
-        let clips = clip::fit(&line, false, self.radii, &self.grower.budget.clip, Care::Nearest)?;
-        let [clip] = clips.as_slice() else { return None };
+    /// The chord along a side; `None` if it would cut any of the surface.
+    fn chord(&self, side: [DVec2; 2]) -> Option<(ClipCurve, Conic)> {
+        let clip = clip::along(side, self.radii, &self.grower.budget.clip)?.pop()?;
         let conic = clip.conic(self.radii);
         let is_kept = |member: &Member| !conic.cuts(member.local.truncate());
-        self.region.members.iter().all(is_kept).then_some((*clip, conic))
+        self.region.members.iter().all(is_kept).then_some((clip, conic))
     }
 }
 

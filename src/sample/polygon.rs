@@ -21,7 +21,8 @@ use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
 use crate::model::triangle::to_triangle;
 
-/// The splat over one piece: a triangle cut out of a plane, or the disc of a single point, cut as [`super::disc`] tells.
+/// The splat over one piece: a triangle cut out of a plane, or the disc of a single point, cut as
+/// [`super::disc`] tells.
 ///
 /// A side is cut along where the surface ends or folds away behind it: elsewhere the ellipse may go
 /// on over the neighbours. `None` if it cannot be stored: too small beside the budget, or too large.
@@ -105,7 +106,7 @@ impl<'a> Triangle<'a> {
 
     /// Chords along all of its sides.
     fn all(&self) -> Option<Vec<ClipCurve>> {
-        self.fitted(&self.outline(), true)
+        clip::fit(&self.outline(), true, self.radii, &self.grower.budget.clip, Care::Nearest)
     }
 
     /// Whether its corners lie in the ellipse.
@@ -144,10 +145,6 @@ impl<'a> Triangle<'a> {
         self.pose.to_local(self.grower.surface.point(point)).truncate()
     }
 
-    fn fitted(&self, line: &[DVec2], closed: bool) -> Option<Vec<ClipCurve>> {
-        clip::fit(line, closed, self.radii, &self.grower.budget.clip, Care::Nearest)
-    }
-
     /// Whether the surface ends at a side.
     fn is_border(&self, side: usize) -> bool {
         self.grower.surface.border_next[self.corners[side] as usize] == self.corners[(side + 1) % 3]
@@ -157,9 +154,8 @@ impl<'a> Triangle<'a> {
     fn chords(&self, cut: u32, outline: &[DVec2; 3]) -> Option<Vec<ClipCurve>> {
         let sides = (0..3).filter(|side| cut >> side & 1 == 1);
         let chord = |side: usize| {
-            let (a, b) = (outline[side], outline[(side + 1) % 3]);
-            let beyond = 2.0 * self.radii.max_element() * (b - a).normalize_or_zero();
-            self.fitted(&[a - beyond, b + beyond], false)
+            let side = [outline[side], outline[(side + 1) % 3]];
+            clip::along(side, self.radii, &self.grower.budget.clip)
         };
         let chords: Option<Vec<Vec<ClipCurve>>> = sides.map(chord).collect();
         chords.map(|chords| chords.concat())
