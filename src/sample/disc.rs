@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::grow::Grower;
+use super::grow::{Grower, MOST_CLIPS};
 use super::outline::border_sides;
 use super::region::{Member, Region};
 use crate::fit::clip;
@@ -14,9 +14,6 @@ use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
-
-/// More chords than this cost more than what they cut off is worth.
-const MOST_CHORDS: usize = 4;
 
 /// A side is cut along already if a place so many misses past the cut along it is cut away: lines wander a little.
 const PAST: f64 = 2.0;
@@ -50,7 +47,7 @@ impl Lines<'_> {
     fn chords(&self) -> Vec<ClipCurve> {
         let (mut clips, mut conics) = (Vec::new(), Vec::<Conic>::new());
         for side in self.sides() {
-            if clips.len() < MOST_CHORDS
+            if clips.len() < MOST_CLIPS
                 && !conics.iter().any(|conic| conic.cuts(self.across(side)))
                 && let Some((clip, conic)) = self.chord(side)
             {

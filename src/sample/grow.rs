@@ -37,7 +37,7 @@ const LEAST_MARGINS: f64 = 1.2;
 
 /// More clip curves than this on one splat cost about as much as a second splat would: with 32, files are between
 /// 0.4 % smaller (a truck) and 1 % larger (a sheet with a hundred holes).
-const MOST_CLIPS: usize = 8;
+pub(super) const MOST_CLIPS: usize = 8;
 
 /// The least domain around a triangle goes on beyond its corners by this factor: they must lie
 /// inside whatever is rounded.
