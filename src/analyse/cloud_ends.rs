@@ -35,7 +35,7 @@ pub fn carried_on(network: Network, search: &Search, sites: &Sites) -> Network {
     if loose.is_empty() {
         return network;
     }
-    let grid = SegmentGrid::new((0..count).map(|segment| network.ends(segment)).collect());
+    let grid = network.grid();
     let walk = Walk { network: &network, grid, search, sites };
     let paths: Vec<Vec<DVec3>> = loose.par_iter().map(|&(segment, node)| walk.path(segment, node)).collect();
     let paths = apart(&paths);

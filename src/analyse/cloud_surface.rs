@@ -195,7 +195,8 @@ fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
 
 fn matched(lines: &[Vec<DVec3>], edges: usize, cut_length: f64, cleaned: Cleaned) -> Matched {
     let length = length(lines);
-    let Cleaned { far: lost, merged: merged_length, smooth: smooth_length } = cleaned;
+    let Cleaned { far: lost, moved, merged: merged_length, smooth: smooth_length } = cleaned;
     let matched_length = (cut_length + merged_length + smooth_length).min(length);
-    Matched { edges, length, matched_length, smooth_length, merged_length, lost, ..Matched::default() }
+    let moved_length = moved.min(length);
+    Matched { edges, length, matched_length, smooth_length, moved_length, merged_length, lost }
 }

@@ -35,7 +35,7 @@ struct Doubled {
 impl Doubled {
     fn of(network: &Network, reach: &impl Fn(DVec3) -> f64) -> Self {
         let count = network.segments.len();
-        let grid = SegmentGrid::new((0..count as u32).map(|segment| network.ends(segment)).collect());
+        let grid = network.grid();
         let strands = network.strands();
         let mut rank = vec![NONE; count];
         let mut of = vec![NONE; count];

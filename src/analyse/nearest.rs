@@ -112,6 +112,33 @@ pub fn listed(row: &[u32]) -> impl Iterator<Item = u32> + Clone + '_ {
     row.iter().copied().take_while(|&other| other != NONE)
 }
 
+/// The points of a cloud and how far apart they lie.
+#[derive(Clone, Copy)]
+pub struct Spacings<'a> {
+    /// Finds them.
+    pub search: &'a Search,
+    /// Model units.
+    pub positions: &'a [Vec3],
+    /// Local spacings, model units.
+    pub spacing: &'a [f32],
+}
+
+impl Spacings<'_> {
+    /// How far the nearest point to a place is, and its spacing, model units; `None` where it has none.
+    #[must_use]
+    pub fn near(&self, place: DVec3) -> Option<(f64, f64)> {
+        let point = self.search.closest(place)? as usize;
+        let spacing = f64::from(self.spacing[point]);
+        (spacing > 0.0).then(|| (self.positions[point].as_dvec3().distance(place), spacing))
+    }
+
+    /// The spacing of the point nearest to a place, model units; 0 where it has none.
+    #[must_use]
+    pub fn at(&self, place: DVec3) -> f64 {
+        self.near(place).map_or(0.0, |(_, spacing)| spacing)
+    }
+}
+
 /// Neighbours whose mean distance is a point's spacing: the first ring of an even sampling.
 const RING: usize = 6;
 

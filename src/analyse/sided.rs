@@ -4,14 +4,15 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::cloud_creases::{Sought, found};
+use super::cloud_creases::{Points, Sought, found};
 use super::cloud_ends::carried_on;
 use super::cloud_graph::Sites;
 use super::cloud_normals::{NormalSource, Normals, normals, parted};
+use super::cloud_snap::onto_creases;
 use super::distinct::{Distinct, distinct};
 use super::line_cut::LineCut;
 use super::line_network::Network;
-use super::nearest::{Nearest, Search, spacing};
+use super::nearest::{Nearest, Search, Spacings, spacing};
 use super::orient::orient_sides;
 use super::seams::{off_seams, seams};
 use crate::error::Result;
@@ -32,6 +33,8 @@ pub enum Lines<'a> {
 pub struct Cleaned {
     /// Segments as given, counted over all lines, ascending, of lines far from the cloud.
     pub far: Vec<u32>,
+    /// Length of the given lines that passed beside the creases they mean and were moved onto them, model units.
+    pub moved: f64,
     /// Length of the lines that ran closely beside others and gave way to them, model units.
     pub merged: f64,
     /// Length of the given lines along which the surface is smooth, model units.
@@ -49,7 +52,8 @@ pub struct Sided {
     pub spacing: Vec<f32>,
     /// Unit normals; those estimated are of one side.
     pub normals: Normals,
-    /// The feature lines, model units; of those given the ones at which the surface is not smooth.
+    /// The feature lines, model units; of those given the ones at which the surface is not smooth, on the creases they
+    /// mean.
     pub lines: Vec<Vec<DVec3>>,
     /// The sides, where a line is near the cloud.
     pub cut: Option<LineCut>,
@@ -70,13 +74,24 @@ impl Sided {
         let nearest = search.nearest();
         let spacing = spacing(&points.positions, &nearest);
         let normals = normals(&points, &nearest, source)?;
+        let laid = Spacings { search: &search, positions: &points.positions, spacing: &spacing };
+        // Points that show no surface show no creases either.
+        let shown = noise.map(|noise| Points { laid, nearest: &nearest, noise });
         let given = matches!(lines, Lines::Given(_));
-        let lines = match lines {
+        let mut lines = match lines {
             Lines::Given(lines) => lines.to_vec(),
-            Lines::Found(sought) => found(&points.positions, &search, &nearest, &spacing, &sought, noise)?,
+            Lines::Found(sought) => shown.map_or_else(|| Ok(Vec::new()), |points| found(&points, &sought))?,
         };
-        let mut network = Network::new(&lines, &search, &points.positions, &spacing);
-        let cleaned = Cleaned { far: std::mem::take(&mut network.far), merged: network.merged, smooth: 0.0 };
+        let mut network = Network::sampled(&lines, &laid).distinct(&laid);
+        let mut moved = 0.0;
+        if let Some(points) = shown.filter(|_| given && !network.segments.is_empty()) {
+            (network, moved) = onto_creases(network, &points)?;
+        }
+        if moved > 0.0 {
+            lines = network.lines();
+        }
+        let far = std::mem::take(&mut network.far);
+        let cleaned = Cleaned { far, moved, merged: network.merged, smooth: 0.0 };
         let noise = noise.unwrap_or_default();
         let mut sided = Self { points, nearest, spacing, normals, lines, cut: None, cleaned, noise };
         if given && !network.segments.is_empty() {

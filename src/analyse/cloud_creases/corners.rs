@@ -48,7 +48,7 @@ const PLACES_LOOKED_AT: usize = 32;
 /// A line of fewer places than this does not close on itself at a corner.
 const LOOP: usize = 8;
 
-/// Weight of the ends' mean among the lines that meet at a corner, so that nearly parallel ones do
+/// Weight of the mean of their places among the lines that meet at a corner, so that nearly parallel ones do
 /// not meet far away.
 const MEAN_WEIGHT: f64 = 1e-2;
 
@@ -210,14 +210,8 @@ fn meet(a: &End, b: &End) -> bool {
 /// The place nearest to all lines that end there, and those ends that reach it.
 fn corner(ends: &[End], mut of: Vec<usize>) -> Option<(DVec3, Vec<usize>)> {
     loop {
-        let mean = of.iter().map(|&n| ends[n].place).sum::<DVec3>() / of.len() as f64;
-        let (mut square, mut side) = (MEAN_WEIGHT * DMat3::IDENTITY, DVec3::ZERO);
-        for &n in &of {
-            let End { place, outward: o, .. } = ends[n];
-            square += DMat3::IDENTITY - DMat3::from_cols(o.x * o, o.y * o, o.z * o);
-            side += (place - mean).reject_from_normalized(o);
-        }
-        let place = mean + square.inverse() * side;
+        let lines: Vec<[DVec3; 2]> = of.iter().map(|&n| [ends[n].place, ends[n].outward]).collect();
+        let place = meeting(&lines);
         let before = of.len();
         of.retain(|&n| ends[n].reaches(place));
         if of.len() < 2 {
@@ -227,6 +221,18 @@ fn corner(ends: &[End], mut of: Vec<usize>) -> Option<(DVec3, Vec<usize>)> {
             return Some((place, of));
         }
     }
+}
+
+/// The place nearest to all of some lines, each of which has a place and a direction (unit vector).
+#[must_use]
+pub fn meeting(lines: &[[DVec3; 2]]) -> DVec3 {
+    let mean = lines.iter().map(|[place, _]| place).sum::<DVec3>() / lines.len() as f64;
+    let (mut square, mut side) = (MEAN_WEIGHT * DMat3::IDENTITY, DVec3::ZERO);
+    for &[place, o] in lines {
+        square += DMat3::IDENTITY - DMat3::from_cols(o.x * o, o.y * o, o.z * o);
+        side += (place - mean).reject_from_normalized(o);
+    }
+    mean + square.inverse() * side
 }
 
 /// Where loose ends run into other lines: a place of each such line.

@@ -42,9 +42,14 @@ impl Line {
         if rounded > ROUNDED {
             return None;
         }
-        let size = chain.samples.iter().map(|sample| sample.size).sum::<f64>() / count as f64;
+        Some(Self::along(chain))
+    }
+
+    /// A chain as a line, whatever it is of.
+    pub(super) fn along(chain: &Chain) -> Self {
+        let size = chain.samples.iter().map(|sample| sample.size).sum::<f64>() / chain.samples.len() as f64;
         let places: Vec<DVec3> = chain.samples.iter().map(|sample| sample.place).collect();
-        Some(Self { places: smoothed(&places, chain.closed), closed: chain.closed, size })
+        Self { places: smoothed(&places, chain.closed), closed: chain.closed, size }
     }
 
     /// Its length.

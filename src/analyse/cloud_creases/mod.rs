@@ -23,15 +23,17 @@ mod samples;
 #[cfg(test)]
 mod tests;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::distinct::distinct;
-use super::nearest::{Nearest, Search, spacing};
+use super::nearest::{Search, Spacings, spacing};
 use super::sets::Sets;
 use crate::error::Result;
 use crate::model::cloud::Cloud;
+pub use corners::meeting;
 use lines::Line;
-use samples::Points;
+use links::Chain;
+pub use samples::Points;
 
 /// What counts as a crease.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,34 +61,40 @@ const LENGTHS: [f64; 3] = [0.5, 3.0, 5.0];
 /// # Errors
 /// [`crate::Error::Internal`] should the neighbour search not take the points.
 pub fn cloud_creases(cloud: &Cloud, sought: &Sought, noise: Option<f64>) -> Result<Vec<Vec<DVec3>>> {
+    let Some(noise) = noise else { return Ok(Vec::new()) };
     let positions = distinct(cloud).positions;
     let search = Search::new(&positions)?;
     let nearest = search.nearest();
     let spacing = spacing(&positions, &nearest);
-    found(&positions, &search, &nearest, &spacing, sought, noise)
+    let laid = Spacings { search: &search, positions: &positions, spacing: &spacing };
+    found(&Points { laid, nearest: &nearest, noise }, sought)
 }
 
-/// As [`cloud_creases`], of distinct points along the Morton curve whose neighbours are known.
+/// As [`cloud_creases`], of points whose neighbours are known.
 ///
 /// # Errors
 /// As [`cloud_creases`].
-pub fn found(
-    positions: &[Vec3],
-    search: &Search,
-    nearest: &Nearest,
-    spacing: &[f32],
-    sought: &Sought,
-    noise: Option<f64>,
-) -> Result<Vec<Vec<DVec3>>> {
-    let cosine = |degrees: f64| libm::cos(degrees.to_radians());
-    let Some(noise) = noise else { return Ok(Vec::new()) };
-    let points = Points { positions, search, nearest, spacing, noise };
-    let samples = ridge::ridge(points.samples(cosine(WEAK_SHARE * sought.degrees)))?;
-    let sharp = cosine(sought.degrees);
-    let mut lines: Vec<Line> =
-        links::chains(&samples)?.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
+pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
+    let all: Vec<u32> = (0..points.laid.positions.len() as u32).collect();
+    let sharp = libm::cos(sought.degrees.to_radians());
+    let chains = chains(points, &all, WEAK_SHARE * sought.degrees)?;
+    let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
     let met = corners::join(&mut lines)?;
     Ok(worth_it(lines, &met, sought.shortest).into_iter().map(Line::whole).collect())
+}
+
+/// Creases at which the surface turns by more than an angle (degrees), as far as some of the points show them, which
+/// are numbered ascending: lines however short, model units.
+///
+/// # Errors
+/// As [`cloud_creases`].
+pub fn traces(points: &Points<'_>, shown_by: &[u32], degrees: f64) -> Result<Vec<Vec<DVec3>>> {
+    Ok(chains(points, shown_by, degrees)?.iter().map(|chain| Line::along(chain).whole()).collect())
+}
+
+/// Samples of creases in the order in which they follow each other.
+fn chains(points: &Points<'_>, shown_by: &[u32], degrees: f64) -> Result<Vec<Chain>> {
+    links::chains(&ridge::ridge(points.samples(shown_by, libm::cos(degrees.to_radians())))?)
 }
 
 /// The lines that are long enough for what they meet.

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::bowl;
 use super::hinge::Hinge;
 use super::plane::Moments;
-use crate::analyse::nearest::{Nearest, Search, listed};
+use crate::analyse::nearest::{NEAREST, Nearest, Spacings, listed};
 
 /// A place on a crease, model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,28 +101,30 @@ const FOLDED: f64 = -0.906;
 
 /// What samples are found from.
 #[derive(Clone, Copy)]
-pub(super) struct Points<'a> {
-    pub(super) positions: &'a [Vec3],
-    pub(super) search: &'a Search,
-    pub(super) nearest: &'a Nearest,
-    pub(super) spacing: &'a [f32],
+pub struct Points<'a> {
+    /// Where they are.
+    pub laid: Spacings<'a>,
+    /// The nearest others of each.
+    pub nearest: &'a Nearest,
     /// Standard deviation of the points from their surface, model units.
-    pub(super) noise: f64,
+    pub noise: f64,
 }
 
 impl Points<'_> {
-    /// Samples of all creases whose turn has a lesser cosine than `turn`, in the order of the points.
-    pub(super) fn samples(&self, turn: f64) -> Vec<Sample> {
+    /// Samples of all creases whose turn has a lesser cosine than `turn`, beside some of the points and in their
+    /// order.
+    pub(super) fn samples(&self, beside: &[u32], turn: f64) -> Vec<Sample> {
         let count = self.count(self.usual_spacing());
         // Neighbourhoods overlap the more the larger they are.
         let stride = (count as f64 / FEWEST) as usize;
-        let seeds = (0..self.positions.len()).into_par_iter().step_by(stride.max(1));
+        let seeds = beside.par_iter().step_by(stride.max(1)).map(|&n| n as usize);
         seeds.filter(|&n| self.is_rough(n, stride > 1)).filter_map(|n| self.sample(n, turn)).collect()
     }
 
     /// The median spacing, model units.
-    fn usual_spacing(&self) -> f64 {
-        let mut spacings = self.spacing.to_vec();
+    #[must_use]
+    pub fn usual_spacing(&self) -> f64 {
+        let mut spacings = self.laid.spacing.to_vec();
         let middle = spacings.len() / 2;
         match middle < spacings.len() {
             true => f64::from(*spacings.select_nth_unstable_by(middle, f32::total_cmp).1),
@@ -130,17 +132,32 @@ impl Points<'_> {
         }
     }
 
+    /// The place on the surface beside another; `None` where the points around lie as on no smooth one.
+    #[must_use]
+    pub fn foot(&self, place: DVec3) -> Option<DVec3> {
+        let closest = self.laid.search.closest(place)? as usize;
+        let count = self.count(f64::from(self.laid.spacing[closest]));
+        let many = count as f64 > FEWEST;
+        if self.is_rough(closest, many) {
+            return None;
+        }
+        let around = self.laid.search.around(place.as_vec3(), if many { count } else { NEAREST });
+        let at = |&n: &u32| self.laid.positions[n as usize].as_dvec3() - place;
+        let plane = Moments::of(around.iter().map(at)).plane()?;
+        Some(place + plane.middle.project_onto_normalized(plane.normal))
+    }
+
     /// Whether the points around one, the nearest or `many`, lie about their plane as on no smooth surface.
     fn is_rough(&self, n: usize, many: bool) -> bool {
-        let spacing = f64::from(self.spacing[n]);
+        let spacing = f64::from(self.laid.spacing[n]);
         let noise = self.noise / spacing;
         if !(spacing > 0.0 && noise < DROWNED) {
             return false;
         }
-        let here = self.positions[n].as_dvec3();
-        let offset = |other: u32| (self.positions[other as usize].as_dvec3() - here) / spacing;
+        let here = self.laid.positions[n].as_dvec3();
+        let offset = |other: u32| (self.laid.positions[other as usize].as_dvec3() - here) / spacing;
         let (moments, share) = if many {
-            let around = self.search.around(self.positions[n], self.count(spacing));
+            let around = self.laid.search.around(self.laid.positions[n], self.count(spacing));
             (Moments::of(around.into_iter().map(offset)), ROUGH_AMONG_MANY)
         } else {
             let near = std::iter::once(DVec3::ZERO).chain(listed(&self.nearest[n]).map(offset));
@@ -157,10 +174,10 @@ impl Points<'_> {
 
     /// The crease beside a point.
     fn sample(&self, n: usize, turn: f64) -> Option<Sample> {
-        let spacing = f64::from(self.spacing[n]);
-        let here = self.positions[n].as_dvec3();
-        let around = self.search.around(self.positions[n], self.count(spacing));
-        let offset = |&other: &u32| (self.positions[other as usize].as_dvec3() - here) / spacing;
+        let spacing = f64::from(self.laid.spacing[n]);
+        let here = self.laid.positions[n].as_dvec3();
+        let around = self.laid.search.around(self.laid.positions[n], self.count(spacing));
+        let offset = |&other: &u32| (self.laid.positions[other as usize].as_dvec3() - here) / spacing;
         let points: Vec<DVec3> = around.iter().map(offset).collect();
         let radius = (points.len() as f64 / PI).sqrt();
         let noise = self.noise / spacing;
