@@ -386,7 +386,8 @@ fn sought(edge_angle: f64, max_error: f64) -> Sought {
 ///
 /// A mesh's lines come as segments of two points. Lines given with a mesh are moved onto the edges
 /// they mean where they lie a little off these, kept as they are where they mean none (they are lost,
-/// and cut nothing). Lines given with a mesh or a cloud are left out where that is smooth.
+/// and cut nothing). Lines given with a cloud that shows no noise are moved onto the creases they mean.
+/// Lines given with a mesh or a cloud are left out where that is smooth.
 /// `noise` is that of a cloud's points, model units; `edge_angle` is in degrees; `max_error`, in model
 /// units, decides which found lines are too short to count. `None` where there are no lines: for a
 /// smooth cloud, for a smooth closed mesh, and for [`Edges::None`].

@@ -27,8 +27,9 @@ pub(super) struct Arguments {
     #[arg(value_name = "INPUT")]
     input: PathBuf,
     /// Feature lines: an OBJ with `l` records or a PLY with an `edge` element, moved onto the edges
-    /// of a mesh where they lie off them by up to 0.5 % of the diagonal; `auto` finds them on a mesh
-    /// by dihedral angle and border, in a cloud by the planes on both sides of a crease
+    /// of a mesh where they lie off them by up to 0.5 % of the diagonal, onto the creases of a cloud
+    /// without noise where they do by up to three spacings; `auto` finds them on a mesh by dihedral
+    /// angle and border, in a cloud by the planes on both sides of a crease
     #[arg(long, value_name = "FILE|auto|none", default_value = "auto")]
     edges: String,
     /// Dihedral angle from which `--edges auto` takes an edge of a mesh, or a crease of a cloud, for a

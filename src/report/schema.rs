@@ -61,8 +61,8 @@ pub struct Input {
     /// `None` without lines.
     #[serde(default)]
     pub lines_smooth: Option<f64>,
-    /// Share of the given lines' length that lies off the edges of the mesh that are meant, and was
-    /// moved onto them; `None` without lines.
+    /// Share of the given lines' length that lies off the edges of the mesh or the creases of the cloud
+    /// that are meant, and was moved onto them; `None` without lines.
     #[serde(default)]
     pub lines_moved: Option<f64>,
     /// Share of the given lines' length that runs beside others of them, closer than the points of a
