@@ -170,7 +170,7 @@ fn apart(paths: &[Vec<DVec3>]) -> Vec<Vec<[Vec3; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analyse::planted::{ROOF_STEP, fall, lay, roof, side_by_side};
+    use crate::analyse::planted::{ROOF_STEP, fall, lay, roof, side_by_side, spaced};
 
     /// Lines along a roof over `[-1, 1]²`, each from and to places in `(x, y)`, carried on.
     fn carried(degrees: f64, lines: &[[[f64; 2]; 2]]) -> Network {
@@ -180,7 +180,7 @@ mod tests {
         let sites = side_by_side(&points, &normals, &nearest, &spacing);
         let place = |[x, y]: [f64; 2]| DVec3::new(x, y, fall(degrees, y));
         let lines: Vec<Vec<DVec3>> = lines.iter().map(|ends| ends.map(place).to_vec()).collect();
-        let network = Network::new(&lines, &search, &points, &spacing);
+        let network = Network::new(&lines, &spaced(&search, &points, &spacing));
         let own = network.clone();
         let on = carried_on(network, &search, &sites);
         assert_eq!(on.segments.len(), own.segments.len() + on.carried.len());

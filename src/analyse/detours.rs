@@ -40,19 +40,15 @@ pub fn detours(network: &Network, reach: &impl Fn(DVec3) -> f64) -> Vec<u32> {
 /// The way from a node by one of its segments, if it is no longer than `reach`.
 fn way(network: &Network, node: u32, segment: u32, reach: f64) -> Option<Way> {
     let mut way = Way { end: node, length: 0.0, segments: Vec::new() };
-    let mut next = segment;
-    loop {
-        way.length += network.length(next);
-        way.segments.push(next);
-        way.end = network.across(next, way.end);
+    for (segment, end) in network.by_twos(segment, network.across(segment, node)) {
+        way.length += network.length(segment);
         if way.length > reach {
             return None;
         }
-        match network.at_node.row(way.end) {
-            &[a, b] => next = if a == next { b } else { a },
-            _ => return Some(way),
-        }
+        way.segments.push(segment);
+        way.end = end;
     }
+    Some(way)
 }
 
 #[cfg(test)]

@@ -368,7 +368,7 @@ mod tests {
     use super::*;
     use crate::analyse::canonical::mix;
     use crate::analyse::nearest::listed;
-    use crate::analyse::planted::{lay, normal, random, side_by_side};
+    use crate::analyse::planted::{lay, normal, random, side_by_side, spaced};
 
     /// Points strewn over the faces of the cube `[-1, 1]³ / 2`, with their normals.
     fn cube(each: u64) -> (Vec<Vec3>, Vec<Vec3>) {
@@ -455,7 +455,10 @@ mod tests {
         let (search, nearest, spacing) = lay(&positions);
         let sites = side_by_side(&positions, &normals, &nearest, &spacing);
         let apart = 1.0_f32 / 45.0;
-        let cut = LineCut::new(Network::new(&ell_edges(apart.into()), &search, &positions, &spacing), &sites);
+        let cut = LineCut::new(
+            Network::new(&ell_edges(apart.into()), &spaced(&search, &positions, &spacing)),
+            &sites,
+        );
         for (segment, sheets) in (0_u32..).zip(&cut.sheets.of) {
             assert_eq!(sheets.len(), 2, "each edge is of two faces: {:?}", cut.network.ends(segment));
         }
@@ -486,7 +489,7 @@ mod tests {
         let positions: Vec<Vec3> = (0..).zip(&exact).map(strayed).collect();
         let (search, nearest, spacing) = lay(&positions);
         let quiet = side_by_side(&positions, &normals, &nearest, &spacing);
-        let network = Network::new(&edges(), &search, &positions, &spacing);
+        let network = Network::new(&edges(), &spaced(&search, &positions, &spacing));
         let whole = |sites: &Sites<'_>| {
             let of = LineCut::new(network.clone(), sites).sheets.of;
             of.iter().filter(|sheets| sheets.len() == 2).count() as f64 / of.len() as f64
@@ -514,7 +517,7 @@ mod tests {
         let (search, nearest, spacing) = lay(&sites);
         let sites = Sites { noise: 0.5 * step, ..side_by_side(&sites, &normals, &nearest, &spacing) };
         let line = [DVec3::NEG_X, DVec3::X].map(|end| end - 0.6 * step * DVec3::Z);
-        let network = Network::new(&[line.to_vec()], &search, sites.positions, &spacing);
+        let network = Network::new(&[line.to_vec()], &spaced(&search, sites.positions, &spacing));
         let of = LineCut::new(network, &sites).sheets.of;
         let told = of.iter().filter(|sheets| sheets.len() == 2).count();
         assert!(told as f64 > 0.7 * of.len() as f64, "{told} of {}", of.len());
@@ -525,7 +528,7 @@ mod tests {
         let (positions, normals) = cube(1500);
         let (search, nearest, spacing) = lay(&positions);
         let sites = side_by_side(&positions, &normals, &nearest, &spacing);
-        let cut = LineCut::new(Network::new(&edges(), &search, &positions, &spacing), &sites);
+        let cut = LineCut::new(Network::new(&edges(), &spaced(&search, &positions, &spacing)), &sites);
         let (mut beside, mut far) = (0, 0);
         for (point, own) in (0_u32..).zip(&normals) {
             let tilted = (*own + own.any_orthonormal_vector()).normalize();
@@ -547,7 +550,7 @@ mod tests {
         let (positions, normals) = cube(1500);
         let (search, nearest, spacing) = lay(&positions);
         let sites = side_by_side(&positions, &normals, &nearest, &spacing);
-        let network = Network::new(&edges(), &search, &positions, &spacing);
+        let network = Network::new(&edges(), &spaced(&search, &positions, &spacing));
         let (nodes, segments) = (network.nodes.len(), network.segments.len());
         assert_eq!(segments, nodes - 8 + 12, "twelve lines of one segment more than inner nodes");
         let cut = LineCut::new(network, &sites);

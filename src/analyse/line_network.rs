@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::canonical;
 use super::detours::detours;
 use super::doubled::merged;
-use super::nearest::{Search, Spacings};
+use super::nearest::Spacings;
 use super::segment_grid::SegmentGrid;
 use super::surface::{NONE, Rows};
 
@@ -70,17 +70,13 @@ pub struct Strand {
 }
 
 impl Network {
-    /// Resamples lines (model units) where they pass near a cloud with local `spacing`, and makes those one that keep
-    /// close to each other.
+    /// Resamples lines (model units) where they pass near a cloud, and makes those one that keep close to each other.
     #[must_use]
-    pub fn new(lines: &[Vec<DVec3>], search: &Search, positions: &[Vec3], spacing: &[f32]) -> Self {
-        let around = Spacings { search, positions, spacing };
-        Self::sampled(lines, &around).distinct(&around)
+    pub fn new(lines: &[Vec<DVec3>], around: &Spacings<'_>) -> Self {
+        Self::sampled(lines, around).distinct(around)
     }
 
-    /// Resamples lines (model units) where they pass near a cloud.
-    #[must_use]
-    pub fn sampled(lines: &[Vec<DVec3>], around: &Spacings<'_>) -> Self {
+    fn sampled(lines: &[Vec<DVec3>], around: &Spacings<'_>) -> Self {
         let near = |place: DVec3| around.near(place);
         let (mut pieces, mut far, mut given) = (Vec::new(), Vec::new(), 0);
         for line in lines {
@@ -180,6 +176,15 @@ impl Network {
         self.walk(segment, node, Self::straight_on)
     }
 
+    /// The same, on through all nodes where two segments meet, however they turn.
+    pub fn by_twos(&self, segment: u32, node: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.walk(segment, node, |network, segment, node| match *network.at_node.row(node) {
+            [a, b] if a == segment => b,
+            [a, _] => a,
+            _ => NONE,
+        })
+    }
+
     fn walk(
         &self,
         segment: u32,
@@ -234,28 +239,6 @@ impl Network {
         let place = |node: u32| places[node as usize].as_vec3() + Vec3::ZERO;
         let pieces: Vec<[Vec3; 2]> = self.segments.iter().map(|ends| ends.map(place)).collect();
         Self { far: self.far, merged: self.merged, ..Self::of_pieces(&pieces) }
-    }
-
-    /// Its lines as polylines, model units; a closed one repeats its first place at the end.
-    #[must_use]
-    pub fn lines(&self) -> Vec<Vec<DVec3>> {
-        self.strands().iter().map(|strand| self.line(strand)).collect()
-    }
-
-    /// The places along a strand.
-    fn line(&self, strand: &Strand) -> Vec<DVec3> {
-        let Some(&first) = strand.segments.first() else { return Vec::new() };
-        let [a, b] = self.segments[first as usize];
-        let meets = |node: u32| {
-            strand.segments.get(1).is_some_and(|&next| self.segments[next as usize].contains(&node))
-        };
-        let mut node = if meets(a) && !meets(b) { b } else { a };
-        let mut nodes = vec![node];
-        for &segment in &strand.segments {
-            node = self.across(segment, node);
-            nodes.push(node);
-        }
-        nodes.into_iter().map(|node| self.nodes[node as usize].as_dvec3()).collect()
     }
 
     /// The network and pieces that carry its lines on.

@@ -11,12 +11,14 @@ const SPAN: usize = 4;
 /// A line that turns by more than this over them (cosine of 45°) has a corner there.
 const TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Nodes along a line.
+/// A line from one corner to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// From one corner to the next; the first is not repeated at the end.
+    /// Its nodes in order; the first is not repeated at the end.
     pub nodes: Vec<u32>,
-    /// Whether the last leads to the first and none is a corner.
+    /// Its segments: each leads from the node of its number to the next.
+    pub segments: Vec<u32>,
+    /// Whether the last leads to the first node and none is a corner.
     pub closed: bool,
 }
 
@@ -26,31 +28,30 @@ impl Way {
     pub fn ends(&self) -> [u32; 2] {
         [self.nodes.first(), self.nodes.last()].map(|node| node.copied().unwrap_or(NONE))
     }
+
+    /// Its segments on either side of the node of a number, so many.
+    pub fn around(&self, at: usize, many: usize) -> impl Iterator<Item = u32> + '_ {
+        let count = self.segments.len();
+        let (from, to) = match self.closed {
+            true => (at + count - many.min(count / 2), at + count + many.min(count.div_ceil(2))),
+            false => (at.saturating_sub(many), (at + many).min(count)),
+        };
+        (from..to).map(move |n| self.segments[n % count])
+    }
 }
 
 /// Whether at a node not two segments meet, or two that turn sharply and with them the line.
-#[must_use]
-pub fn is_corner(network: &Network, node: u32) -> bool {
+fn is_corner(network: &Network, node: u32) -> bool {
     let &[a, b] = network.at_node.row(node) else { return true };
     if network.beyond(a, node) == b {
         return false;
     }
-    let here = network.nodes[node as usize].as_dvec3();
+    let place = |node: u32| network.nodes[node as usize].as_dvec3();
     let leads = |segment: u32| {
-        let far = walk(network, segment, node).take(SPAN).last().map_or(node, |(_, node)| node);
-        (network.nodes[far as usize].as_dvec3() - here).normalize_or_zero()
+        let far = network.by_twos(segment, network.across(segment, node)).take(SPAN).last();
+        (place(far.map_or(node, |(_, node)| node)) - place(node)).normalize_or_zero()
     };
-    let [before, after]: [DVec3; 2] = [leads(a), leads(b)];
-    before.dot(after) > -TURN
-}
-
-/// A segment at a node and those that follow it where two meet, each with the node that it leads to.
-fn walk(network: &Network, segment: u32, node: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
-    std::iter::successors(Some((segment, network.across(segment, node))), |&(segment, node)| {
-        let &[a, b] = network.at_node.row(node) else { return None };
-        let next = if a == segment { b } else { a };
-        Some((next, network.across(next, node)))
-    })
+    leads(a).dot(leads(b)) > -TURN
 }
 
 /// The ways between the nodes that are corners, and those round and round without any; each segment is in one.
@@ -62,18 +63,19 @@ pub fn ways(network: &Network, corner: &[bool]) -> Vec<Way> {
         if seen[first as usize] {
             return;
         }
-        let mut nodes = vec![node];
-        for (segment, next) in walk(network, first, node) {
+        let mut way = Way { nodes: vec![node], segments: Vec::new(), closed };
+        for (segment, next) in network.by_twos(first, network.across(first, node)) {
             seen[segment as usize] = true;
+            way.segments.push(segment);
             if closed && next == node {
                 break;
             }
-            nodes.push(next);
+            way.nodes.push(next);
             if corner[next as usize] {
                 break;
             }
         }
-        ways.push(Way { nodes, closed });
+        ways.push(way);
     };
     let all = 0..network.nodes.len() as u32;
     for node in all.clone().filter(|&node| corner[node as usize]) {
@@ -83,6 +85,23 @@ pub fn ways(network: &Network, corner: &[bool]) -> Vec<Way> {
         network.at_node.row(node).iter().for_each(|&segment| follow(segment, node, true));
     }
     ways
+}
+
+/// The corners of a network.
+#[must_use]
+pub fn corners(network: &Network) -> Vec<bool> {
+    (0..network.nodes.len() as u32).map(|node| is_corner(network, node)).collect()
+}
+
+/// The lines of a network, model units; a closed one repeats its first place at the end.
+#[must_use]
+pub fn lines(network: &Network) -> Vec<Vec<DVec3>> {
+    let place = |node: &u32| network.nodes[*node as usize].as_dvec3();
+    let line = |way: &Way| {
+        let again = way.nodes.first().filter(|_| way.closed);
+        way.nodes.iter().chain(again).map(place).collect()
+    };
+    ways(network, &corners(network)).iter().map(line).collect()
 }
 
 #[cfg(test)]
@@ -96,11 +115,19 @@ mod tests {
         let pieces: Vec<[Vec3; 2]> =
             lines.iter().flat_map(|line| line.windows(2).map(|side| [side[0], side[1]])).collect();
         let network = Network::of_pieces(&pieces);
-        let corner: Vec<bool> =
-            (0..network.nodes.len() as u32).map(|node| is_corner(&network, node)).collect();
-        let ways = ways(&network, &corner);
-        let segments: usize = ways.iter().map(|way| way.nodes.len() - usize::from(!way.closed)).sum();
-        assert_eq!(segments, network.segments.len(), "each segment is in one way");
+        let ways = ways(&network, &corners(&network));
+        let mut segments: Vec<u32> = ways.iter().flat_map(|way| way.segments.iter().copied()).collect();
+        segments.sort_unstable();
+        assert!(segments.into_iter().eq(0..network.segments.len() as u32), "each segment is in one way");
+        for way in &ways {
+            assert_eq!(way.segments.len(), way.nodes.len() - usize::from(!way.closed));
+            let all: Vec<u32> = way.around(0, 3).collect();
+            assert_eq!(
+                all.len(),
+                if way.closed { 6 } else { 3 },
+                "three on either side where there are so many"
+            );
+        }
         let place = |node: u32| network.nodes[node as usize];
         ways.iter()
             .map(|way| (way.ends().map(place), way))

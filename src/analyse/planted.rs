@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use super::canonical::mix;
 use super::cloud_graph::Sites;
-use super::nearest::{Nearest, Search, spacing};
+use super::nearest::{Nearest, Search, Spacings, spacing};
 
 /// The numbers of [`normal`] are made of others than those of [`random`] of small arguments.
 const APART: u64 = 1 << 40;
@@ -43,6 +43,11 @@ pub(crate) fn lay(points: &[Vec3]) -> (Search, Nearest, Vec<f32>) {
     let nearest = search.nearest();
     let spacing = spacing(points, &nearest);
     (search, nearest, spacing)
+}
+
+/// The same as one.
+pub(crate) fn spaced<'a>(search: &'a Search, positions: &'a [Vec3], spacing: &'a [f32]) -> Spacings<'a> {
+    Spacings { search, positions, spacing }
 }
 
 /// Points without noise.

@@ -108,7 +108,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::analyse::planted::{ROOF_STEP, fall, lay, roof, side_by_side};
+    use crate::analyse::planted::{ROOF_STEP, fall, lay, roof, side_by_side, spaced};
     use crate::model::polyline::length;
 
     /// The length of a seam and of a crease of so many degrees that it runs onto, and of those parts of them that are
@@ -123,7 +123,7 @@ mod tests {
         let crease = [at(-1.0, 0.0), at(1.0, 0.0)];
         let seam = [at(0.1, 0.0), at(0.1, 1.0)];
         let lines = [vec![crease[0], at(0.1, 0.0), crease[1]], seam.to_vec()];
-        let network = Network::new(&lines, &search, &points, &spacing);
+        let network = Network::new(&lines, &spaced(&search, &points, &spacing));
         let seams = seams(&network, &sites);
         let left = length(&off_seams(&lines, &network, &seams));
         let of = |is_crease: bool| {

@@ -12,6 +12,7 @@ use super::cloud_snap::onto_creases;
 use super::distinct::{Distinct, distinct};
 use super::line_cut::LineCut;
 use super::line_network::Network;
+use super::line_ways;
 use super::nearest::{Nearest, Search, Spacings, spacing};
 use super::orient::orient_sides;
 use super::seams::{off_seams, seams};
@@ -82,13 +83,13 @@ impl Sided {
             Lines::Given(lines) => lines.to_vec(),
             Lines::Found(sought) => shown.map_or_else(|| Ok(Vec::new()), |points| found(&points, &sought))?,
         };
-        let mut network = Network::sampled(&lines, &laid).distinct(&laid);
+        let mut network = Network::new(&lines, &laid);
         let mut moved = 0.0;
         if let Some(points) = shown.filter(|_| given && !network.segments.is_empty()) {
             (network, moved) = onto_creases(network, &points)?;
         }
         if moved > 0.0 {
-            lines = network.lines();
+            lines = line_ways::lines(&network);
         }
         let far = std::mem::take(&mut network.far);
         let cleaned = Cleaned { far, moved, merged: network.merged, smooth: 0.0 };

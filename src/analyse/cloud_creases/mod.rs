@@ -24,6 +24,7 @@ mod samples;
 mod tests;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::distinct::distinct;
 use super::nearest::{Search, Spacings, spacing};
@@ -75,9 +76,9 @@ pub fn cloud_creases(cloud: &Cloud, sought: &Sought, noise: Option<f64>) -> Resu
 /// # Errors
 /// As [`cloud_creases`].
 pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
-    let all: Vec<u32> = (0..points.laid.positions.len() as u32).collect();
+    let all = 0..points.laid.positions.len() as u32;
     let sharp = libm::cos(sought.degrees.to_radians());
-    let chains = chains(points, &all, WEAK_SHARE * sought.degrees)?;
+    let chains = chains(points, all.into_par_iter(), WEAK_SHARE * sought.degrees)?;
     let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
     let met = corners::join(&mut lines)?;
     Ok(worth_it(lines, &met, sought.shortest).into_iter().map(Line::whole).collect())
@@ -89,11 +90,18 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
 /// # Errors
 /// As [`cloud_creases`].
 pub fn traces(points: &Points<'_>, shown_by: &[u32], degrees: f64) -> Result<Vec<Vec<DVec3>>> {
-    Ok(chains(points, shown_by, degrees)?.iter().map(|chain| Line::along(chain).whole()).collect())
+    Ok(chains(points, shown_by.par_iter().copied(), degrees)?
+        .iter()
+        .map(|chain| Line::along(chain).whole())
+        .collect())
 }
 
 /// Samples of creases in the order in which they follow each other.
-fn chains(points: &Points<'_>, shown_by: &[u32], degrees: f64) -> Result<Vec<Chain>> {
+fn chains(
+    points: &Points<'_>,
+    shown_by: impl IndexedParallelIterator<Item = u32>,
+    degrees: f64,
+) -> Result<Vec<Chain>> {
     links::chains(&ridge::ridge(points.samples(shown_by, libm::cos(degrees.to_radians())))?)
 }
 

@@ -113,11 +113,11 @@ pub struct Points<'a> {
 impl Points<'_> {
     /// Samples of all creases whose turn has a lesser cosine than `turn`, beside some of the points and in their
     /// order.
-    pub(super) fn samples(&self, beside: &[u32], turn: f64) -> Vec<Sample> {
+    pub(super) fn samples(&self, beside: impl IndexedParallelIterator<Item = u32>, turn: f64) -> Vec<Sample> {
         let count = self.count(self.usual_spacing());
         // Neighbourhoods overlap the more the larger they are.
         let stride = (count as f64 / FEWEST) as usize;
-        let seeds = beside.par_iter().step_by(stride.max(1)).map(|&n| n as usize);
+        let seeds = beside.step_by(stride.max(1)).map(|n| n as usize);
         seeds.filter(|&n| self.is_rough(n, stride > 1)).filter_map(|n| self.sample(n, turn)).collect()
     }
 
