@@ -24,8 +24,12 @@ const ABOVE_NOISE: f64 = 5.0;
 /// Noisier points than this, in spacings, are taken for no noisier: how a surface goes on hardly shows.
 const NOISIEST: f64 = 1.0;
 
-/// Points within this many spacings beyond those show the sheets of a line.
+/// Points within this many spacings beyond those show the sheets of a line...
 const DEPTH: f64 = 2.7;
+
+/// ... and those within this many are told apart by them: sheets that meet at 36° are two spacings and a half apart
+/// there, beyond which few of a point's neighbours are on the other.
+const TOLD_APART: f64 = 4.0;
 
 /// Segments on either side, along the line, whose points vote too: four to eight spacings,
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
@@ -121,7 +125,7 @@ pub fn beside_lines(network: &Network, sites: &Sites) -> Vec<Option<Beside>> {
     let grid = SegmentGrid::new(ends);
     let beside = |n: usize| {
         let point = sites.positions[n].as_dvec3();
-        let near = grid.nearest(point, too_near(sites, n) + DEPTH * f64::from(sites.spacing[n]))?;
+        let near = grid.nearest(point, too_near(sites, n) + TOLD_APART * f64::from(sites.spacing[n]))?;
         Some(beside(network, near.segment, point))
     };
     (0..sites.positions.len()).into_par_iter().map(beside).collect()
@@ -138,8 +142,9 @@ pub fn sheets_of(
 ) -> Vec<Vec<Sheet>> {
     let votes = |(n, beside): (usize, &Option<Beside>)| {
         let beside = beside.as_ref().filter(|beside| !beside.at_end && tells(beside.segment))?;
-        let far = beside.offset.length() > too_near(sites, n);
-        far.then_some((beside.segment, n as u32))
+        let away = beside.offset.length() - too_near(sites, n);
+        let shows = away > 0.0 && away <= DEPTH * f64::from(sites.spacing[n]);
+        shows.then_some((beside.segment, n as u32))
     };
     let voters =
         Rows::from_pairs(network.segments.len(), beside.iter().enumerate().filter_map(votes).collect());

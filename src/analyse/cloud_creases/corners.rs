@@ -8,9 +8,21 @@ use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
 use crate::error::Result;
 
-/// How far beyond its last sample a line may be carried on, in its size: near a corner the third
-/// face hides it.
+/// How far beyond its last sample a line may be carried on, in its size: on to a line that it runs into, over a gap...
 const AHEAD: f64 = 1.8;
+
+/// ... to a corner with another, if the third face that hides both near it is between lines at right angles or
+/// more: up to two sizes lie between the last samples of an edge of a cube and its corner...
+const TO_CORNER: f64 = 2.0;
+
+/// ... or at a sharper corner, at which they hide each other for longer.
+const TO_SHARP_CORNER: f64 = 6.0;
+
+/// How far a line may be carried on to a corner at which others are known to meet.
+const TO_KNOWN_CORNER: f64 = 4.0;
+
+/// The sine of half a right angle.
+const HALF_RIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// How far back from its last sample a line may be cut for a corner, in its size.
 const BACK: f64 = 0.6;
@@ -37,7 +49,7 @@ const TANGENT: usize = 4;
 /// Ends looked at around one end.
 const LOOKED_AT: usize = 16;
 
-/// Places of lines that an end may run into are looked for around this share of its reach: those
+/// Places that an end may go on to are looked for around this share of its reach: those
 /// reached lie in the ball whose middle that is.
 const MIDWAY: f64 = 0.5;
 
@@ -98,14 +110,29 @@ impl End {
         apart && length > 0.0 && (near(AHEAD, FACING) || (wide && near(GAP, STRAIGHT)))
     }
 
-    /// Whether a place is where the line may go on to.
-    fn reaches(&self, place: DVec3) -> bool {
+    /// Whether a place is where the line may go on to, at most so many sizes ahead.
+    fn reaches(&self, place: DVec3, most: f64) -> bool {
         let way = place - self.place;
         let ahead = way.dot(self.outward);
-        (-BACK * self.size..=AHEAD * self.size).contains(&ahead)
+        (-BACK * self.size..=most * self.size).contains(&ahead)
             && way.reject_from_normalized(self.outward).length() <= MISS * self.size
     }
+
+    /// How far ahead a corner with another may lie, in its size: as far as the lines lie a like distance apart.
+    fn to_corner(&self, other: &Self) -> f64 {
+        let half = (0.5 * (1.0 - self.outward.dot(other.outward)).max(0.0)).sqrt();
+        (TO_CORNER * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
+    }
+
+    /// Of some places the nearest that the line may go on to, at most so many sizes ahead.
+    fn nearest(&self, places: impl Iterator<Item = DVec3>, most: f64) -> Option<DVec3> {
+        let reached = places.filter(|&place| self.reaches(place, most));
+        reached.min_by(|a, b| a.distance(self.place).total_cmp(&b.distance(self.place)))
+    }
 }
+
+/// Where ends meet, or one runs on to, and the numbers of these.
+type Meeting = (DVec3, Vec<usize>);
 
 fn ends(lines: &[Line]) -> Vec<End> {
     let open = lines.iter().enumerate().filter(|(_, line)| !line.closed);
@@ -118,28 +145,31 @@ fn search(places: impl Iterator<Item = DVec3>) -> Result<Option<Search>> {
     if places.is_empty() { Ok(None) } else { Search::new(&places).map(Some) }
 }
 
-/// Carries the ends of lines on to corners and to other lines; how many lines meet at each line's
-/// two ends then: 0 for an end that stays loose.
+/// Carries the ends of lines on to corners and to other lines; whether each line's two ends meet
+/// something then.
 ///
 /// # Errors
 /// As [`Search::new`].
-pub(super) fn join(lines: &mut [Line]) -> Result<Vec<[usize; 2]>> {
-    let mut met = vec![[0; 2]; lines.len()];
+pub(super) fn join(lines: &mut [Line]) -> Result<Vec<[bool; 2]>> {
+    let mut met = vec![[false; 2]; lines.len()];
     let mut loose = ends(lines);
-    for meeting in [gaps, corners] {
-        for (place, ends) in meeting(&loose)? {
-            for &n in &ends {
-                let end = &loose[n];
-                extend(&mut lines[end.line], end, place);
-                met[end.line][usize::from(end.last)] = ends.len();
+    let mut bring = |lines: &mut [Line], loose: &mut Vec<End>, meetings: &[Meeting]| {
+        for (place, ends) in meetings {
+            for end in ends.iter().map(|&n| &loose[n]) {
+                extend(&mut lines[end.line], end, *place);
+                met[end.line][usize::from(end.last)] = true;
             }
         }
-        loose.retain(|end| met[end.line][usize::from(end.last)] == 0);
-    }
-    for (end, place) in run_into(lines, &loose)? {
-        extend(&mut lines[end.line], &end, place);
-        met[end.line][usize::from(end.last)] = 2;
-    }
+        loose.retain(|end| !met[end.line][usize::from(end.last)]);
+    };
+    let over_gaps = gaps(&loose)?;
+    bring(lines, &mut loose, &over_gaps);
+    let corners = corners(&loose)?;
+    bring(lines, &mut loose, &corners);
+    let late = to_corners(&loose, &corners)?;
+    bring(lines, &mut loose, &late);
+    let run = run_into(lines, &loose)?;
+    bring(lines, &mut loose, &run);
     Ok(met)
 }
 
@@ -158,7 +188,7 @@ fn extend(line: &mut Line, end: &End, place: DVec3) {
 }
 
 /// Where the two ends at a gap meet: of all that face each other the nearest, if that is mutual.
-fn gaps(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
+fn gaps(ends: &[End]) -> Result<Vec<Meeting>> {
     let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
     let facing = |n: usize| {
         let near = search.around(ends[n].place.as_vec3(), LOOKED_AT).into_iter().map(|other| other as usize);
@@ -176,7 +206,7 @@ fn between(a: &End, b: &End) -> DVec3 {
 }
 
 /// Where ends meet, and which do.
-fn corners(ends: &[End]) -> Result<Vec<(DVec3, Vec<usize>)>> {
+fn corners(ends: &[End]) -> Result<Vec<Meeting>> {
     let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
     let mut sets = Sets::new(ends.len());
     for (n, end) in ends.iter().enumerate() {
@@ -204,22 +234,26 @@ fn meet(a: &End, b: &End) -> bool {
     let along = |outward: DVec3| between.cross(outward).dot(cross) / square;
     let (s, t) = (along(b.outward), along(a.outward));
     let place = 0.5 * (a.place + s * a.outward + b.place + t * b.outward);
-    (a.line != b.line || a.places >= LOOP) && a.reaches(place) && b.reaches(place)
+    (a.line != b.line || a.places >= LOOP)
+        && a.reaches(place, a.to_corner(b))
+        && b.reaches(place, b.to_corner(a))
 }
 
 /// The place nearest to all lines that end there, and those ends that reach it.
-fn corner(ends: &[End], mut of: Vec<usize>) -> Option<(DVec3, Vec<usize>)> {
+fn corner(ends: &[End], mut of: Vec<usize>) -> Option<Meeting> {
     loop {
         let lines: Vec<[DVec3; 2]> = of.iter().map(|&n| [ends[n].place, ends[n].outward]).collect();
         let place = meeting(&lines);
-        let before = of.len();
-        of.retain(|&n| ends[n].reaches(place));
-        if of.len() < 2 {
+        let others = |n: usize| of.iter().filter(move |&&other| other != n).map(|&other| &ends[other]);
+        let ahead = |n: usize| others(n).map(|other| ends[n].to_corner(other)).fold(0.0, f64::max);
+        let reaching: Vec<usize> = of.iter().copied().filter(|&n| ends[n].reaches(place, ahead(n))).collect();
+        if reaching.len() < 2 {
             return None;
         }
-        if of.len() == before {
+        if reaching.len() == of.len() {
             return Some((place, of));
         }
+        of = reaching;
     }
 }
 
@@ -235,22 +269,36 @@ pub fn meeting(lines: &[[DVec3; 2]]) -> DVec3 {
     mean + square.inverse() * side
 }
 
-/// Where loose ends run into other lines: a place of each such line.
-fn run_into(lines: &[Line], loose: &[End]) -> Result<Vec<(End, DVec3)>> {
+/// Loose ends that lead to corners at which others meet.
+fn to_corners(loose: &[End], corners: &[Meeting]) -> Result<Vec<Meeting>> {
+    let Some(search) = search(corners.iter().map(|corner| corner.0))? else { return Ok(Vec::new()) };
+    let corner = |(n, end): (usize, &End)| {
+        let near = search.around(midway(end, TO_KNOWN_CORNER), LOOKED_AT);
+        let places = near.into_iter().map(|near| corners[near as usize].0);
+        Some((end.nearest(places, TO_KNOWN_CORNER)?, vec![n]))
+    };
+    Ok(loose.iter().enumerate().filter_map(corner).collect())
+}
+
+/// Loose ends that run into other lines, each at a place of such a line.
+fn run_into(lines: &[Line], loose: &[End]) -> Result<Vec<Meeting>> {
     let all: Vec<(usize, DVec3)> = lines
         .iter()
         .enumerate()
         .flat_map(|(n, line)| line.places.iter().map(move |&place| (n, place)))
         .collect();
     let Some(search) = search(all.iter().map(|(_, place)| *place))? else { return Ok(Vec::new()) };
-    let hit = |end: &End| {
-        let target = end.place + MIDWAY * AHEAD * end.size * end.outward;
-        let near = search.around(target.as_vec3(), PLACES_LOOKED_AT).into_iter().map(|n| all[n as usize]);
-        let reached = near.filter(|&(line, place)| line != end.line && end.reaches(place));
-        let nearest = reached.min_by(|a, b| a.1.distance(end.place).total_cmp(&b.1.distance(end.place)));
-        nearest.map(|(_, place)| (*end, place))
+    let hit = |(n, end): (usize, &End)| {
+        let near = search.around(midway(end, AHEAD), PLACES_LOOKED_AT).into_iter();
+        let others = near.map(|near| all[near as usize]).filter(|&(line, _)| line != end.line);
+        Some((end.nearest(others.map(|(_, place)| place), AHEAD)?, vec![n]))
     };
-    Ok(loose.iter().filter_map(hit).collect())
+    Ok(loose.iter().enumerate().filter_map(hit).collect())
+}
+
+/// The middle of what lies at most so many sizes ahead of an end.
+fn midway(end: &End, most: f64) -> Vec3 {
+    (end.place + MIDWAY * most * end.size * end.outward).as_vec3()
 }
 
 #[cfg(test)]
@@ -271,10 +319,10 @@ mod tests {
     #[test]
     fn wide_gaps_are_bridged_where_the_line_goes_straight_on() {
         // Of 1.7, 3.8 and 5.2 sizes.
-        for (degrees, met) in [(8.0, 2), (18.0, 2), (25.0, 0)] {
+        for (degrees, met) in [(8.0, true), (18.0, true), (25.0, false)] {
             let mut lines = [arc(0.0, 90.0), arc(90.0 + degrees, 180.0 + degrees)];
-            assert_eq!(join(&mut lines).unwrap(), [[0, met], [met, 0]], "{degrees}°");
-            if met > 0 {
+            assert_eq!(join(&mut lines).unwrap(), [[false, met], [met, false]], "{degrees}°");
+            if met {
                 let place = *lines[0].places.last().unwrap();
                 // The middle of the wider gap's chord is off by 0.15.
                 assert!((place.length() - 12.0).abs() < 0.06, "{degrees}°: {place} is off the circle");
@@ -286,11 +334,38 @@ mod tests {
         for place in &mut lines[1].places {
             *place += 1.2 * place.normalize();
         }
-        assert_eq!(join(&mut lines).unwrap(), [[0, 0]; 2]);
+        assert_eq!(join(&mut lines).unwrap(), [[false; 2]; 2]);
         // And between lines of which neither, or one, is long enough to be one by itself.
-        for (from, met) in [(70.0, 0), (0.0, 2)] {
+        for (from, met) in [(70.0, false), (0.0, true)] {
             let mut lines = [arc(from, 90.0), arc(108.0, 128.0)];
-            assert_eq!(join(&mut lines).unwrap(), [[0, met], [met, 0]], "from {from}°");
+            assert_eq!(join(&mut lines).unwrap(), [[false, met], [met, false]], "from {from}°");
         }
+    }
+    /// A straight line with as many places as that is long, in sizes, times three.
+    fn straight(from: DVec3, to: DVec3) -> Line {
+        let count = (3.0 * from.distance(to)) as u32;
+        let places = (0..=count).map(|n| from.lerp(to, f64::from(n) / f64::from(count))).collect();
+        Line { places, closed: false, size: 1.0 }
+    }
+
+    #[test]
+    fn lines_that_end_before_their_corner_are_carried_on_to_it() {
+        // Two sides of an angle, each as far from its tip as the other hides it, and a third line that ends
+        // so far from the corner.
+        for (degrees, short, third) in [(90.0_f64, 1.9, 3.9), (36.0, 4.0, 1.0), (20.0, 5.5, 3.9)] {
+            let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
+            let ways = [DVec3::new(cos, sin, 0.0), DVec3::new(cos, -sin, 0.0), DVec3::Z];
+            let from = [short, short, third];
+            let mut lines: Vec<Line> = ways
+                .into_iter()
+                .zip(from)
+                .map(|(way, from)| straight(from * way, (from + 9.0) * way))
+                .collect();
+            assert_eq!(join(&mut lines).unwrap(), [[true, false]; 3], "{degrees}°");
+            assert!(lines.iter().all(|line| line.places[0].length() < 1e-9), "{degrees}°");
+        }
+        // None of these ends near enough for the angle.
+        let mut lines = [straight(3.0 * DVec3::X, 9.0 * DVec3::X), straight(3.0 * DVec3::Y, 9.0 * DVec3::Y)];
+        assert_eq!(join(&mut lines).unwrap(), [[false; 2]; 2]);
     }
 }

@@ -106,7 +106,7 @@ fn chains(
 }
 
 /// The lines that are long enough for what they meet.
-fn worth_it(lines: Vec<Line>, met: &[[usize; 2]], shortest: f64) -> Vec<Line> {
+fn worth_it(lines: Vec<Line>, met: &[[bool; 2]], shortest: f64) -> Vec<Line> {
     let mut sets = Sets::new(lines.len());
     let mut ends: Vec<([u64; 3], u32)> = Vec::new();
     for (n, line) in (0_u32..).zip(&lines) {
@@ -121,7 +121,7 @@ fn worth_it(lines: Vec<Line>, met: &[[usize; 2]], shortest: f64) -> Vec<Line> {
         together[sets.root(n) as usize] += line.length();
     }
     let long = |n: usize, line: &Line, root: u32| {
-        let loose = if line.closed { 0 } else { met[n].iter().filter(|met| **met == 0).count() };
+        let loose = if line.closed { 0 } else { met[n].iter().filter(|met| !**met).count() };
         together[root as usize] >= shortest && line.length() >= LENGTHS[loose] * line.size
     };
     let keep: Vec<bool> =
