@@ -22,6 +22,11 @@ pub const CLIPPED_QUANTIZE_SHARE: f64 = 0.15;
 /// Share of the budget that the fit may use at points on feature lines.
 pub const LINE_FIT_SHARE: f64 = 0.3;
 
+/// The same at points on the feature lines of a cloud, of splats that are rounded: as far as curves follow these
+/// lines outside them. The lines of a cloud stray from its faces by a fifth of the budget at corners, and rounding may
+/// move a large face by a third.
+pub const CLOUD_LINE_SHARE: f64 = 0.5;
+
 /// Clip curves follow their feature line this share of the budget outside it, so that no
 /// slit opens between the two surfaces that meet there, each of which may pass the line at a
 /// distance. At corners more acute than 74° they follow it less far outside, so that the tip where two

@@ -27,9 +27,9 @@ const NOISIEST: f64 = 1.0;
 /// Points within this many spacings beyond those show the sheets of a line...
 const DEPTH: f64 = 2.7;
 
-/// ... and those within this many are told apart by them: sheets that meet at 36° are two spacings and a half apart
-/// there, beyond which few of a point's neighbours are on the other.
-const TOLD_APART: f64 = 4.0;
+/// ... and points within this many of a line are told apart by them in any case: sheets that meet at 36° are two
+/// spacings and a half apart there, beyond which few of a point's neighbours are on the other.
+const TOLD_APART: f64 = 4.3;
 
 /// Segments on either side, along the line, whose points vote too: four to eight spacings,
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
@@ -125,7 +125,7 @@ pub fn beside_lines(network: &Network, sites: &Sites) -> Vec<Option<Beside>> {
     let grid = SegmentGrid::new(ends);
     let beside = |n: usize| {
         let point = sites.positions[n].as_dvec3();
-        let near = grid.nearest(point, too_near(sites, n) + TOLD_APART * f64::from(sites.spacing[n]))?;
+        let near = grid.nearest(point, reach(sites, n))?;
         Some(beside(network, near.segment, point))
     };
     (0..sites.positions.len()).into_par_iter().map(beside).collect()
@@ -142,14 +142,24 @@ pub fn sheets_of(
 ) -> Vec<Vec<Sheet>> {
     let votes = |(n, beside): (usize, &Option<Beside>)| {
         let beside = beside.as_ref().filter(|beside| !beside.at_end && tells(beside.segment))?;
-        let away = beside.offset.length() - too_near(sites, n);
-        let shows = away > 0.0 && away <= DEPTH * f64::from(sites.spacing[n]);
+        let away = beside.offset.length();
+        let shows = away > too_near(sites, n) && away <= depth(sites, n);
         shows.then_some((beside.segment, n as u32))
     };
     let voters =
         Rows::from_pairs(network.segments.len(), beside.iter().enumerate().filter_map(votes).collect());
     let segments = (0..network.segments.len() as u32).into_par_iter();
     segments.map(|segment| sheets(network, sites, beside, &voters, segment)).collect()
+}
+
+/// Within how far of a line points show its sheets, model units.
+fn depth(sites: &Sites, point: usize) -> f64 {
+    too_near(sites, point) + DEPTH * f64::from(sites.spacing[point])
+}
+
+/// Within how far of a point lines are looked for, model units.
+fn reach(sites: &Sites, point: usize) -> f64 {
+    depth(sites, point).max(TOLD_APART * f64::from(sites.spacing[point]))
 }
 
 /// Within how far of a line a point has no direction from it, model units.

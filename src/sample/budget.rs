@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use crate::fit::clip::{ClipTolerance, Clips};
 use crate::tolerance::{
-    CLIP_LEAST_SHARE, CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, FIT_SHARE, LINE_FIT_SHARE,
+    CLIP_LEAST_SHARE, CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, CLOUD_LINE_SHARE, FIT_SHARE,
+    LINE_FIT_SHARE,
 };
 
 /// Distances that growing a splat must keep, in model units.
@@ -15,6 +16,8 @@ pub struct Budget {
     /// The same for a point on a feature line: two surfaces meet there, each cut somewhat
     /// outside the line, and the nearer both pass the line the less remains of a slit.
     pub line: f64,
+    /// The same once the splat is rounded and cut along its lines, in a cloud.
+    pub cloud_line: f64,
     /// How far a quadric may sink below the surface that it reaches over but need not cover, because
     /// another splat does: twice the budget (of which quantising takes its share). The error
     /// of a quadric grows with the third power of the distance, so this is worth a quarter of
@@ -68,6 +71,11 @@ impl Budget {
         Self {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
+            cloud_line: match clips {
+                Clips::Curved | Clips::Straight => CLOUD_LINE_SHARE * max_error,
+                // They begin to cut no farther outside than that allows.
+                Clips::Partners => LINE_FIT_SHARE * max_error,
+            },
             rim: 2.0 * FIT_SHARE * max_error,
             proud: PROUD * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,
@@ -86,10 +94,11 @@ impl Budget {
     /// A share of all of it.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
-        let &Self { fit, line, rim, proud, overhang, pad, clip, stored } = self;
+        let &Self { fit, line, cloud_line, rim, proud, overhang, pad, clip, stored } = self;
         Self {
             fit: share * fit,
             line: share * line,
+            cloud_line: share * cloud_line,
             rim: share * rim,
             proud: share * proud,
             overhang: share * overhang,

@@ -272,7 +272,7 @@ impl Grower<'_> {
                 member.local = fitted.pose.to_local(self.surface.point(member.point));
             }
         }
-        if !self.keeps(&fitted.pose, outer, fitted.curvature, 1.0, region) {
+        if !self.keeps(&fitted.pose, outer, fitted.curvature, self.budget.line, 1.0, region) {
             return Err(Stop::Fit);
         }
         let clips = self.clips(&fitted.pose, outer, fitted.curvature, Care::Feasible, region)?;
@@ -342,19 +342,20 @@ impl Grower<'_> {
     ///
     /// Members farther off than the budget for fits are not covered by it ([`Self::near`]),
     /// but may be reached over: what stands there must keep the budget for rims. Points on
-    /// lines always have to lie near, since there the surface ends. `slack` multiplies the
-    /// distances allowed.
+    /// lines always have to lie within `line`, since there the surface ends. `slack` multiplies the
+    /// other distances allowed.
     pub(super) fn keeps(
         &self,
         pose: &Pose,
         outer: DVec2,
         curvature: DVec2,
+        line: f64,
         slack: f64,
         region: &Region,
     ) -> bool {
         let kept = |member: &Member| {
             if self.surface.on_border(member.point) {
-                miss(curvature, member.local) <= slack * self.budget.line
+                miss(curvature, member.local) <= line
             } else {
                 self.reaches(curvature, member.local, slack)
             }

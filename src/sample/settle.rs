@@ -121,15 +121,16 @@ fn finish(
     region: &mut Region,
 ) -> Option<Candidate> {
     let pose = Pose { center: splat.center, axes: splat.axes };
+    let meshed = grower.surface.spots.is_empty();
+    let line = if meshed { ROUNDED_SLACK * grower.budget.line } else { grower.budget.cloud_line };
     let kept = region.gather(grower.surface, &pose, splat.radii, seeds)
-        && grower.keeps(&pose, splat.radii, splat.curvature, ROUNDED_SLACK, region);
+        && grower.keeps(&pose, splat.radii, splat.curvature, line, ROUNDED_SLACK, region);
     splat.clips =
         kept.then(|| grower.clips(&pose, splat.radii, splat.curvature, Care::Nearest, region).ok())??;
     if !Backing::of(grower, &pose, splat.radii, splat.curvature, region, Look::Fine).holds(&splat.clips) {
         return None;
     }
     let trusted = grower.budget.trusted(splat.radii - more);
-    let meshed = grower.surface.spots.is_empty();
     // Points strewn about a line may lie as near to a curve as that is rounded.
     let stored = if meshed { None } else { Some((grower.round)(&splat)?.clips) };
     let clips = stored.as_ref().unwrap_or(&splat.clips);
