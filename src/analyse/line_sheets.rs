@@ -27,9 +27,12 @@ const NOISIEST: f64 = 1.0;
 /// Points within this many spacings beyond those show the sheets of a line...
 const DEPTH: f64 = 2.7;
 
-/// ... and points within this many of a line are told apart by them in any case: sheets that meet at 36° are two
+/// ... and points within this many of a line are told apart by them, where they meet sharply: at 36° they are two
 /// spacings and a half apart there, beyond which few of a point's neighbours are on the other.
 const TOLD_APART: f64 = 4.3;
+
+/// Sheets meet sharply at an angle of less than this (cosine of 60°).
+const SHARP: f64 = 0.5;
 
 /// Segments on either side, along the line, whose points vote too: four to eight spacings,
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
@@ -98,8 +101,18 @@ impl Sheets {
     /// Finds the sheets that meet at each segment of a network.
     #[must_use]
     pub fn find(network: &Network, sites: &Sites) -> Self {
-        let beside = beside_lines(network, sites);
+        let told = |n: usize| depth(sites, n).max(TOLD_APART * f64::from(sites.spacing[n]));
+        let mut beside = beside_within(network, sites, told);
         let of = sheets_of(network, sites, &beside, |_| true);
+        let meet_sharply = |sheets: &[Sheet]| {
+            let pairs = sheets.iter().enumerate().flat_map(|(n, a)| sheets[..n].iter().map(move |b| (a, b)));
+            pairs.into_iter().any(|(a, b)| a.inward.dot(b.inward) > SHARP)
+        };
+        let sharp: Vec<bool> = of.iter().map(|sheets| meet_sharply(sheets)).collect();
+        beside.par_iter_mut().enumerate().for_each(|(n, beside)| {
+            let far = |beside: &Beside| beside.offset.length() > depth(sites, n);
+            *beside = beside.filter(|beside| sharp[beside.segment as usize] || !far(beside));
+        });
         Self { of, beside }
     }
 
@@ -118,14 +131,23 @@ impl Sheets {
     }
 }
 
-/// The nearest place on a network's lines of each point near one.
+/// The nearest place on a network's lines of each point near enough to one to show its sheets.
 #[must_use]
 pub fn beside_lines(network: &Network, sites: &Sites) -> Vec<Option<Beside>> {
+    beside_within(network, sites, |n| depth(sites, n))
+}
+
+/// The same of each point that has one within its reach, model units.
+fn beside_within(
+    network: &Network,
+    sites: &Sites,
+    reach: impl Fn(usize) -> f64 + Sync,
+) -> Vec<Option<Beside>> {
     let ends = (0..network.segments.len() as u32).map(|segment| network.ends(segment)).collect();
     let grid = SegmentGrid::new(ends);
     let beside = |n: usize| {
         let point = sites.positions[n].as_dvec3();
-        let near = grid.nearest(point, reach(sites, n))?;
+        let near = grid.nearest(point, reach(n))?;
         Some(beside(network, near.segment, point))
     };
     (0..sites.positions.len()).into_par_iter().map(beside).collect()
@@ -155,11 +177,6 @@ pub fn sheets_of(
 /// Within how far of a line points show its sheets, model units.
 fn depth(sites: &Sites, point: usize) -> f64 {
     too_near(sites, point) + DEPTH * f64::from(sites.spacing[point])
-}
-
-/// Within how far of a point lines are looked for, model units.
-fn reach(sites: &Sites, point: usize) -> f64 {
-    depth(sites, point).max(TOLD_APART * f64::from(sites.spacing[point]))
 }
 
 /// Within how far of a line a point has no direction from it, model units.

