@@ -104,14 +104,9 @@ impl Sheets {
         let told = |n: usize| depth(sites, n).max(TOLD_APART * f64::from(sites.spacing[n]));
         let mut beside = beside_within(network, sites, told);
         let of = sheets_of(network, sites, &beside, |_| true);
-        let meet_sharply = |sheets: &[Sheet]| {
-            let pairs = sheets.iter().enumerate().flat_map(|(n, a)| sheets[..n].iter().map(move |b| (a, b)));
-            pairs.into_iter().any(|(a, b)| a.inward.dot(b.inward) > SHARP)
-        };
-        let sharp: Vec<bool> = of.iter().map(|sheets| meet_sharply(sheets)).collect();
         beside.par_iter_mut().enumerate().for_each(|(n, beside)| {
-            let far = |beside: &Beside| beside.offset.length() > depth(sites, n);
-            *beside = beside.filter(|beside| sharp[beside.segment as usize] || !far(beside));
+            let near = |beside: &Beside| beside.offset.length() <= depth(sites, n);
+            *beside = beside.filter(|beside| near(beside) || meet_sharply(&of[beside.segment as usize]));
         });
         Self { of, beside }
     }
@@ -222,6 +217,14 @@ fn window(network: &Network, segment: u32) -> Vec<u32> {
         }
     }
     found
+}
+
+/// Whether some of the sheets of a segment meet sharply.
+fn meet_sharply(sheets: &[Sheet]) -> bool {
+    let with_before = |(n, sheet): (usize, &Sheet)| {
+        sheets[..n].iter().any(|before| before.inward.dot(sheet.inward) > SHARP)
+    };
+    sheets.iter().enumerate().any(with_before)
 }
 
 /// Groups the points around a segment by their direction from it.

@@ -118,7 +118,7 @@ impl End {
 
     /// How far ahead a corner with another may lie, in its size: there the two are as near to each other as at right
     /// angles, or as [`AHEAD`] leaves them.
-    fn to_corner(&self, other: &Self) -> f64 {
+    fn corner_reach(&self, other: &Self) -> f64 {
         let half = (0.5 * (1.0 - self.outward.dot(other.outward)).max(0.0)).sqrt();
         (AHEAD * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
     }
@@ -234,8 +234,8 @@ fn meet(a: &End, b: &End) -> bool {
     let (s, t) = (along(b.outward), along(a.outward));
     let place = 0.5 * (a.place + s * a.outward + b.place + t * b.outward);
     (a.line != b.line || a.places >= LOOP)
-        && a.reaches(place, a.to_corner(b))
-        && b.reaches(place, b.to_corner(a))
+        && a.reaches(place, a.corner_reach(b))
+        && b.reaches(place, b.corner_reach(a))
 }
 
 /// The place nearest to all lines that end there, and those ends that reach it.
@@ -244,7 +244,7 @@ fn corner(ends: &[End], mut of: Vec<usize>) -> Option<Meeting> {
         let lines: Vec<[DVec3; 2]> = of.iter().map(|&n| [ends[n].place, ends[n].outward]).collect();
         let place = meeting(&lines);
         let others = |n: usize| of.iter().filter(move |&&other| other != n).map(|&other| &ends[other]);
-        let ahead = |n: usize| others(n).map(|other| ends[n].to_corner(other)).fold(0.0, f64::max);
+        let ahead = |n: usize| others(n).map(|other| ends[n].corner_reach(other)).fold(0.0, f64::max);
         let reaching: Vec<usize> = of.iter().copied().filter(|&n| ends[n].reaches(place, ahead(n))).collect();
         if reaching.len() < 2 {
             return None;
@@ -340,6 +340,7 @@ mod tests {
             assert_eq!(join(&mut lines).unwrap(), [[false, met], [met, false]], "from {from}°");
         }
     }
+
     /// A straight line with as many places as that is long, in sizes, times three.
     fn straight(from: DVec3, to: DVec3) -> Line {
         let count = (3.0 * from.distance(to)) as u32;
