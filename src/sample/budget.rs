@@ -71,11 +71,7 @@ impl Budget {
         Self {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
-            cloud_line: match clips {
-                Clips::Curved | Clips::Straight => CLOUD_LINE_SHARE * max_error,
-                // They begin to cut no farther outside than that allows.
-                Clips::Partners => LINE_FIT_SHARE * max_error,
-            },
+            cloud_line: CLOUD_LINE_SHARE * max_error,
             rim: 2.0 * FIT_SHARE * max_error,
             proud: PROUD * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,

@@ -8,7 +8,7 @@ use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
 use super::outline::{Outline, outlines};
 use super::region::Region;
-use crate::fit::clip::Care;
+use crate::fit::clip::{Care, Clips};
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -122,7 +122,10 @@ fn finish(
 ) -> Option<Candidate> {
     let pose = Pose { center: splat.center, axes: splat.axes };
     let meshed = grower.surface.spots.is_empty();
-    let line = if meshed { ROUNDED_SLACK * grower.budget.line } else { grower.budget.cloud_line };
+    // Partners begin to cut no farther outside a line than the lesser distance allows.
+    let partnered = grower.budget.clip.clips == Clips::Partners;
+    let line =
+        if meshed || partnered { ROUNDED_SLACK * grower.budget.line } else { grower.budget.cloud_line };
     let kept = region.gather(grower.surface, &pose, splat.radii, seeds)
         && grower.keeps(&pose, splat.radii, splat.curvature, line, ROUNDED_SLACK, region);
     splat.clips =
@@ -255,7 +258,6 @@ mod tests {
     use crate::analyse::cloud_normals::NormalSource;
     use crate::analyse::cloud_surface::{Lines, cloud_surface};
     use crate::analyse::planted::{normal, random};
-    use crate::fit::clip::Clips;
     use crate::fit::pose::Shapes;
     use crate::model::cloud::Cloud;
     use crate::sample::budget::Budget;
