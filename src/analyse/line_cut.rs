@@ -524,6 +524,41 @@ mod tests {
     }
 
     #[test]
+    fn the_walls_of_a_wedge_are_told_apart_as_far_as_it_is_thin() {
+        let step = (4.0 / 20_000.0_f64).sqrt();
+        let (sin, cos) = libm::sincos(18_f64.to_radians());
+        let (sites, normals): (Vec<Vec3>, Vec<Vec3>) = (0..20_000_u64)
+            .map(|n| {
+                let (x, way) = (random(2 * n), 0.5 + 0.5 * random(2 * n + 1));
+                let side = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
+                let place = DVec3::new(x, side * way * sin, way * cos);
+                (place.as_vec3(), DVec3::new(0.0, side * cos, -sin).as_vec3())
+            })
+            .unzip();
+        let (search, nearest, spacing) = lay(&sites);
+        let sites = side_by_side(&sites, &normals, &nearest, &spacing);
+        let line = [DVec3::NEG_X, DVec3::X];
+        let network = Network::new(&[line.to_vec()], &spaced(&search, sites.positions, &spacing));
+        let cut = LineCut::new(network, &sites);
+        // Where both lie between three spacings and four from the line, its ends aside.
+        let told = |n: u32| {
+            let place = sites.positions[n as usize];
+            place.x.abs() < 0.9 && (3.2 * step..4.0 * step).contains(&f64::from(place.with_x(0.0).length()))
+        };
+        let across = (0..sites.positions.len() as u32).filter(|&n| told(n)).flat_map(|n| {
+            let others = listed(&nearest[n as usize]).map(move |other| (n, other));
+            others.filter(|&(n, other)| told(other) && n % 2 != other % 2)
+        });
+        let across: Vec<(u32, u32)> = across.collect();
+        let parted = across.iter().filter(|&&(a, b)| cut.parts(&sites, a, b)).count();
+        assert!(
+            across.len() > 50 && parted as f64 > 0.8 * across.len() as f64,
+            "{parted} of {}",
+            across.len()
+        );
+    }
+
+    #[test]
     fn a_normal_of_several_faces_becomes_that_of_the_face() {
         let (positions, normals) = cube(1500);
         let (search, nearest, spacing) = lay(&positions);
