@@ -58,7 +58,7 @@ pub struct Analysed {
 pub fn analysed(points: usize) -> Result<Analysed> {
     let points = distinct(&cloud(points));
     let nearest = Search::new(&points.positions)?.nearest();
-    let normals = normals(&points, &nearest, NormalSource::Estimate)?.normals;
+    let normals = normals(&points, &nearest, NormalSource::Estimate, None)?.normals;
     Ok(Analysed { points, nearest, normals })
 }
 

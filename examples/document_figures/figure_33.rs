@@ -110,7 +110,7 @@ pub fn make(page: &mut Page) -> Result<()> {
 fn head(input: &qsplat::ingest::Input) -> Result<Head> {
     let points = distinct(input.cloud());
     let nearest = Search::new(&points.positions)?.nearest();
-    let normals = normals(&points, &nearest, NormalSource::Auto)?.normals;
+    let normals = normals(&points, &nearest, NormalSource::Auto, None)?.normals;
     let tree = tree(&points.positions)?;
     let diagonal = deliver::model(input).diagonal();
     Ok(Head { points: points.positions, normals, tree, diagonal })

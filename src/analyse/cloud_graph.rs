@@ -122,7 +122,7 @@ impl Sites<'_> {
 
 /// Middle direction and half the angle of the widest wedge without any of `sites`, its tip at the origin, if
 /// it is wider than [`WIDE`]; radians.
-fn widest_gap(sites: &[DVec2]) -> Option<[f64; 2]> {
+pub(super) fn widest_gap(sites: &[DVec2]) -> Option<[f64; 2]> {
     let mut angles: Vec<f64> = sites.iter().map(|site| libm::atan2(site.y, site.x)).collect();
     angles.sort_unstable_by(f64::total_cmp);
     let first = angles.first().map_or(TAU, |first| first + TAU);

@@ -4,6 +4,8 @@ use glam::{DMat3, DVec3, Vec3};
 use nalgebra::{Const, Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
+use super::cloud_creases::Points;
+use super::consensus;
 use super::distinct::Distinct;
 use super::nearest::{Nearest, listed};
 use super::orient::{agreement, orient};
@@ -39,6 +41,9 @@ pub struct Plane {
     pub normal: Vec3,
     /// Whether the neighbourhood is much wider than thick.
     pub flat: bool,
+    /// Its least variance over the middle one, from 0 where the points lie on a plane or a line to 1 where they lie
+    /// as in a ball.
+    pub roundness: f64,
 }
 
 /// Unit normals, and whether they were estimated from the positions.
@@ -52,9 +57,16 @@ pub struct Normals {
 
 /// Unit normals of a cloud's points, outward as far as can be told.
 ///
+/// `shown` are the points if they show a surface: estimated normals are then of one sheet where others cross it.
+///
 /// # Errors
 /// [`Error::Usage`] where normals are to be kept and none is sound.
-pub fn normals(points: &Distinct, nearest: &Nearest, source: NormalSource) -> Result<Normals> {
+pub fn normals(
+    points: &Distinct,
+    nearest: &Nearest,
+    source: NormalSource,
+    shown: Option<&Points<'_>>,
+) -> Result<Normals> {
     let sound = points.normals.iter().filter(|n| **n != Vec3::ZERO).count();
     if source == NormalSource::Keep && sound == 0 {
         return Err(Error::Usage(
@@ -64,8 +76,7 @@ pub fn normals(points: &Distinct, nearest: &Nearest, source: NormalSource) -> Re
     // A handful of kept normals among thousands of missing ones gives no signs to follow.
     if source == NormalSource::Estimate || 2 * sound < points.positions.len() {
         let all = (0..points.positions.len()).into_par_iter();
-        let mut normals: Vec<Vec3> =
-            all.map(|n| plane(&points.positions, n, listed(&nearest[n])).normal).collect();
+        let mut normals: Vec<Vec3> = all.map(|n| estimate(points, nearest, shown, n)).collect();
         orient(&points.positions, nearest, &mut normals);
         return Ok(Normals { normals, estimated: true });
     }
@@ -74,6 +85,12 @@ pub fn normals(points: &Distinct, nearest: &Nearest, source: NormalSource) -> Re
         orient(&points.positions, nearest, &mut normals);
     }
     Ok(Normals { normals, estimated: false })
+}
+
+/// The normal of a point's sheet, of either sign.
+fn estimate(points: &Distinct, nearest: &Nearest, shown: Option<&Points<'_>>, n: usize) -> Vec3 {
+    let all = plane(&points.positions, n, listed(&nearest[n]));
+    shown.and_then(|shown| consensus::normal(shown, n, &all)).unwrap_or(all.normal)
 }
 
 /// Estimates the normals of points again whose neighbourhood a feature line parts.
@@ -165,24 +182,15 @@ fn spread(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + 
 #[must_use]
 pub fn plane(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + Clone) -> Plane {
     let Some(spread) = spread(positions, index, others) else {
-        return Plane { normal: Vec3::Z, flat: false };
+        return Plane { normal: Vec3::Z, flat: false, roundness: 0.0 };
     };
-    let (eigen, order) = eigen(&spread);
-    let least = eigen.eigenvectors.column(order[0]);
-    let normal = DVec3::new(least[0], least[1], least[2]).normalize_or(DVec3::Z).as_vec3();
-    let flat = eigen.eigenvalues[order[0]] < FLAT * eigen.eigenvalues[order[1]];
-    Plane { normal: upward(normal), flat }
-}
-
-/// The least variance of a point and others (model units) over the middle one, from 0 where they lie
-/// on a plane or a line to 1 where they lie as in a ball.
-#[must_use]
-pub fn roundness(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + Clone) -> f64 {
-    let Some(spread) = spread(positions, index, others) else { return 0.0 };
     let (eigen, [least, middle, _]) = eigen(&spread);
+    let across = eigen.eigenvectors.column(least);
+    let normal = DVec3::new(across[0], across[1], across[2]).normalize_or(DVec3::Z).as_vec3();
     let [least, middle] = [least, middle].map(|n| eigen.eigenvalues[n]);
     // Rounding may leave less than nothing of what is nothing.
-    if least > 0.0 { least / middle } else { 0.0 }
+    let roundness = if least > 0.0 { least / middle } else { 0.0 };
+    Plane { normal: upward(normal), flat: least < FLAT * middle, roundness }
 }
 
 /// Eigenvalues and eigenvectors of a symmetric matrix, and their order from the least.

@@ -15,6 +15,7 @@ pub mod cloud_graph;
 pub mod cloud_normals;
 mod cloud_snap;
 pub mod cloud_surface;
+mod consensus;
 pub mod creases;
 mod curved;
 pub mod detours;

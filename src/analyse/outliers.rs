@@ -14,7 +14,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::cloud_graph::{Joined, are_near};
-use super::cloud_normals::roundness;
+use super::cloud_normals::plane;
 use super::nearest::{NEAREST, Nearest, listed};
 use super::sets::Sets;
 use super::surface::NONE;
@@ -92,7 +92,7 @@ impl Strewn<'_> {
         // Hardly any point is lonely beside even the densest around: most need no median.
         let lonely =
             around().any(|other| spacing > LONELY * other) && spacing > LONELY * median(around().collect());
-        lonely || (spacing > far_off && roundness(self.positions, n, listed(row)) > BALL)
+        lonely || (spacing > far_off && plane(self.positions, n, listed(row)).roundness > BALL)
     }
 
     /// Whether the surface could go on from one point to another but for its direction.

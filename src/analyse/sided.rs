@@ -74,10 +74,10 @@ impl Sided {
         let search = Search::new(&points.positions)?;
         let nearest = search.nearest();
         let spacing = spacing(&points.positions, &nearest);
-        let normals = normals(&points, &nearest, source)?;
         let laid = Spacings { search: &search, positions: &points.positions, spacing: &spacing };
-        // Points that show no surface show no creases either.
+        // Points that show no surface show neither creases nor sheets that cross.
         let shown = noise.map(|noise| Points { laid, nearest: &nearest, noise });
+        let normals = normals(&points, &nearest, source, shown.as_ref())?;
         let given = matches!(lines, Lines::Given(_));
         let mut lines = match lines {
             Lines::Given(lines) => lines.to_vec(),
