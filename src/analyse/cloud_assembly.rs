@@ -63,7 +63,11 @@ impl<'a> Assembly<'a> {
             pieces: rows().flat_map(|row| self.owned.row(row).iter().map(move |_| [row; 3])).collect(),
             spots: rows().flat_map(|row| self.owned.row(row)).map(|&point| self.spot(point)).collect(),
             pieces_of: Rows::consecutive(&lengths.collect::<Vec<_>>()),
-            margin: rows().map(|row| self.margin(row)).chain(on_lines.iter().map(|_| 0.0)).collect(),
+            margin: rows()
+                .into_par_iter()
+                .map(|row| self.margin(row))
+                .chain(on_lines.par_iter().map(|_| 0.0))
+                .collect(),
             border_prev: inverse(&border_next),
             border_next,
             carried: self.carried(),

@@ -123,6 +123,9 @@ impl Sites<'_> {
 /// Middle direction and half the angle of the widest wedge without any of `sites`, its tip at the origin, if
 /// it is wider than [`WIDE`]; radians.
 pub(super) fn widest_gap(sites: &[DVec2]) -> Option<[f64; 2]> {
+    if !may_gape(sites) {
+        return None;
+    }
     let mut angles: Vec<f64> = sites.iter().map(|site| libm::atan2(site.y, site.x)).collect();
     angles.sort_unstable_by(f64::total_cmp);
     let first = angles.first().map_or(TAU, |first| first + TAU);
@@ -131,6 +134,17 @@ pub(super) fn widest_gap(sites: &[DVec2]) -> Option<[f64; 2]> {
     let [from, to] = gaps.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
     (to - from > WIDE).then_some([0.5 * (from + to), 0.5 * (to - from)])
 }
+
+/// Whether two eighths of the plane side by side are empty, as in any wedge wider than 135°: around most
+/// points none are, and no angle has to be computed.
+fn may_gape(sites: &[DVec2]) -> bool {
+    let mut seen = [false; SECTORS];
+    sites.iter().for_each(|&site| seen[sector(site)] = true);
+    (0..SECTORS).any(|n| !seen[TURN[n]] && !seen[TURN[(n + 1) % SECTORS]])
+}
+
+/// The sectors one after another around the origin.
+const TURN: [usize; SECTORS] = [0, 4, 5, 1, 3, 7, 6, 2];
 
 /// The eighth of the plane a place lies in.
 fn sector(uv: DVec2) -> usize {
@@ -154,40 +168,51 @@ pub struct Corners {
 /// and do not count.
 #[must_use]
 pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Corners {
-    let mut cell = [DVec2::ZERO; CORNERS];
+    let (mut cell, mut cut) = (&mut [DVec2::ZERO; CORNERS], &mut [DVec2::ZERO; CORNERS]);
     let mut count = 4;
     for (corner, (x, y)) in cell.iter_mut().zip([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) {
         *corner = DVec2::new(x, y) * reach;
     }
+    let (mut farthest, mut beyond) = (2.0 * reach * reach, [0.0; CORNERS]);
     for site in sites.iter().take(NEAREST) {
         // A site at more than twice the distance of every corner cuts none of them off.
-        let farthest = cell[..count].iter().map(|corner| corner.length_squared()).fold(0.0, f64::max);
         if site.length_squared() > 4.0 * farthest {
             continue;
         }
         // Places nearer to the site lie beyond the bisector, on its far side.
-        let beyond = |p: DVec2| p.dot(*site) - 0.5 * site.length_squared();
-        let mut cut = [DVec2::ZERO; CORNERS];
-        let mut kept = 0;
-        for n in 0..count {
-            let (a, b) = (cell[n], cell[(n + 1) % count]);
-            let (fa, fb) = (beyond(a), beyond(b));
-            if fa <= 0.0 && kept < CORNERS {
-                cut[kept] = a;
-                kept += 1;
-            }
-            if (fa < 0.0) != (fb < 0.0) && kept < CORNERS {
-                cut[kept] = a.lerp(b, fa / (fa - fb));
-                kept += 1;
-            }
+        for (beyond, corner) in beyond.iter_mut().zip(&cell[..count]) {
+            *beyond = corner.dot(*site) - 0.5 * site.length_squared();
         }
-        (cell, count) = (cut, kept);
+        if beyond[..count].iter().all(|beyond| *beyond <= 0.0) {
+            continue;
+        }
+        count = near_side(&cell[..count], &beyond, cut);
+        std::mem::swap(&mut cell, &mut cut);
+        farthest = cell[..count].iter().map(|corner| corner.length_squared()).fold(0.0, f64::max);
     }
     let corners = cell[..count].iter().map(|corner| corner.length());
     // Corners of the square itself, or on its sides, lie at least `reach` away.
     let near = |distance: &f64| *distance < reach * (1.0 - 1e-9);
     let open = corners.clone().any(|distance| !near(&distance));
     Corners { farthest: corners.filter(|distance| *distance > 0.0 && near(distance)).reduce(f64::max), open }
+}
+
+/// The part of a cell this side of a line, by how far its corners lie beyond it; how many corners that has.
+fn near_side(cell: &[DVec2], beyond: &[f64], part: &mut [DVec2; CORNERS]) -> usize {
+    let mut kept = 0;
+    for n in 0..cell.len() {
+        let next = if n + 1 < cell.len() { n + 1 } else { 0 };
+        let (fa, fb) = (beyond[n], beyond[next]);
+        if fa <= 0.0 && kept < CORNERS {
+            part[kept] = cell[n];
+            kept += 1;
+        }
+        if (fa < 0.0) != (fb < 0.0) && kept < CORNERS {
+            part[kept] = cell[n].lerp(cell[next], fa / (fa - fb));
+            kept += 1;
+        }
+    }
+    kept
 }
 
 #[cfg(test)]
@@ -221,6 +246,21 @@ mod tests {
         );
         assert_eq!((widest_gap(&hexagon), widest_gap(&[])), (None, Some([0.5 * TAU; 2])));
         assert!(!open(&square) && !open(&hexagon) && open(&hexagon[..3]) && open(&[]));
+    }
+
+    #[test]
+    fn wherever_a_wedge_lies_its_angle_counts() {
+        for n in 0..720 {
+            let from = f64::from(n).to_radians() / 2.0;
+            // Five sites, evenly over all but a wedge of 152° and over all but one of 148°.
+            let sites = |wedge: f64| -> Vec<DVec2> {
+                let step = (TAU - wedge.to_radians()) / 4.0;
+                (0..5).map(|k| DVec2::from_angle(from + f64::from(k) * step)).collect()
+            };
+            let [_, half] = widest_gap(&sites(152.0)).unwrap();
+            assert!((2.0 * half.to_degrees() - 152.0).abs() < 1e-9);
+            assert_eq!(widest_gap(&sites(148.0)), None);
+        }
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! Normals of a cloud: the file's where they are sound, else those of the local planes.
 
 use glam::{DMat3, DVec3, Vec3};
-use nalgebra::{Const, Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::cloud_creases::Points;
 use super::consensus;
 use super::distinct::Distinct;
+use super::least_axis::{LeastAxis, minors};
 use super::nearest::{Nearest, listed};
 use super::orient::{agreement, orient};
 use crate::error::{Error, Result};
@@ -146,12 +146,6 @@ fn wild(points: &Distinct, nearest: &Nearest, n: usize) -> bool {
     plane.flat && kept.dot(plane.normal.as_dvec3()).abs() < WILD
 }
 
-/// Sum of the principal minors of a symmetric matrix: `l0 l1 + l0 l2 + l1 l2`.
-fn minors(m: &DMat3) -> f64 {
-    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
-    x.x * y.y - x.y * x.y + x.x * z.z - x.z * x.z + y.y * z.z - y.z * y.z
-}
-
 /// The second moments of a point and others about their mean, in units of the size of the
 /// neighbourhood squared; `None` if all lie at one place.
 fn spread(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32> + Clone) -> Option<DMat3> {
@@ -184,21 +178,10 @@ pub fn plane(positions: &[Vec3], index: usize, others: impl Iterator<Item = u32>
     let Some(spread) = spread(positions, index, others) else {
         return Plane { normal: Vec3::Z, flat: false, roundness: 0.0 };
     };
-    let (eigen, [least, middle, _]) = eigen(&spread);
-    let across = eigen.eigenvectors.column(least);
-    let normal = DVec3::new(across[0], across[1], across[2]).normalize_or(DVec3::Z).as_vec3();
-    let [least, middle] = [least, middle].map(|n| eigen.eigenvalues[n]);
+    let LeastAxis { axis, least, middle } = LeastAxis::of(&spread);
     // Rounding may leave less than nothing of what is nothing.
     let roundness = if least > 0.0 { least / middle } else { 0.0 };
-    Plane { normal: upward(normal), flat: least < FLAT * middle, roundness }
-}
-
-/// Eigenvalues and eigenvectors of a symmetric matrix, and their order from the least.
-fn eigen(matrix: &DMat3) -> (SymmetricEigen<f64, Const<3>>, [usize; 3]) {
-    let eigen = SymmetricEigen::new(Matrix3::from_column_slice(&matrix.to_cols_array()));
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    (eigen, order)
+    Plane { normal: upward(axis.as_vec3()), flat: least < FLAT * middle, roundness }
 }
 
 /// Of a normal and its opposite, the one whose greatest coordinate is positive: the solver's

@@ -1,6 +1,7 @@
 //! The distinct points of a cloud, in an order that does not depend on the input's.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::canonical;
 use crate::model::cloud::Cloud;
@@ -33,12 +34,15 @@ pub fn distinct(cloud: &Cloud) -> Distinct {
     let said = |v: u32| ((normal(v) + Vec3::ZERO).to_array().map(f32::to_bits), color(v));
     let mut order = canonical::order(&cloud.positions);
     let mut found = Distinct { place: vec![0; order.len()], ..Distinct::default() };
-    let position = |v: u32| cloud.positions[v as usize] + Vec3::ZERO;
-    for same in order.chunk_by_mut(|&a, &b| position(a) == position(b)) {
+    let sorted: Vec<Vec3> = order.par_iter().map(|&v| cloud.positions[v as usize] + Vec3::ZERO).collect();
+    let mut rest = order.as_mut_slice();
+    for alike in sorted.chunk_by(|a, b| a == b) {
+        let (same, others) = std::mem::take(&mut rest).split_at_mut(alike.len());
+        rest = others;
         for &v in &*same {
             found.place[v as usize] = found.positions.len() as u32;
         }
-        found.positions.push(position(same[0]));
+        found.positions.push(alike[0]);
         same.sort_unstable_by_key(|&v| said(v));
         // The first of those that say the same; most are alone.
         let different = || same.chunk_by(|&a, &b| said(a) == said(b)).map(|alike| alike[0]);

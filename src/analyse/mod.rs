@@ -24,6 +24,7 @@ pub mod doubled;
 mod edge_paths;
 pub mod edges;
 pub mod given_lines;
+mod least_axis;
 pub mod line_cut;
 mod line_ends;
 pub mod line_network;

@@ -118,8 +118,8 @@ fn tied(
         sets.tie(a, b, normals[a as usize].dot(normals[b as usize]) < 0.0);
     };
     let tie_sure = |sets: &mut SignedSets, apart: &dyn Fn(u32, u32) -> bool| {
-        for (a, row) in (0_u32..).zip(nearest) {
-            for b in listed(&row[..TAKEN.min(NEAREST)]) {
+        for a in 0..normals.len() as u32 {
+            for b in taken(nearest, a) {
                 let sure = normals[a as usize].dot(normals[b as usize]).abs() >= SURE;
                 if sure && !apart(a, b) {
                     tie(sets, a, b);
@@ -163,22 +163,27 @@ fn tie_across(sets: &mut SignedSets, across: &[Across]) {
 
 /// The weights and ends of the edges that are not sure, ascending.
 fn in_doubt(nearest: &Nearest, normals: &[Vec3]) -> Vec<(u32, u32, u32)> {
-    let mut edges: Vec<(u32, u32, u32)> = nearest
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|(a, row)| {
-            let a = a as u32;
-            listed(&row[..TAKEN.min(NEAREST)]).filter_map(move |b| {
-                // An edge that both ends list is taken from the lesser.
-                let twice = b < a && listed(&nearest[b as usize][..TAKEN.min(NEAREST)]).any(|c| c == a);
-                let cosine = normals[a as usize].dot(normals[b as usize]).abs();
-                // Positive floats sort like their bits.
-                (cosine < SURE && !twice).then_some(((1.0 - cosine).to_bits(), a, b))
-            })
+    let points = (0..normals.len() as u32).into_par_iter();
+    let edges = points.flat_map_iter(|a| {
+        taken(nearest, a).filter_map(move |b| {
+            let cosine = normals[a as usize].dot(normals[b as usize]).abs();
+            // Positive floats sort like their bits.
+            (cosine < SURE && !is_taken_twice(nearest, a, b)).then_some(((1.0 - cosine).to_bits(), a, b))
         })
-        .collect();
+    });
+    let mut edges: Vec<(u32, u32, u32)> = edges.collect();
     edges.par_sort_unstable();
     edges
+}
+
+/// The others that a point makes edges of the graph with.
+fn taken(nearest: &Nearest, point: u32) -> impl Iterator<Item = u32> + Clone + '_ {
+    listed(&nearest[point as usize][..TAKEN.min(NEAREST)])
+}
+
+/// Whether an edge from `a` is one from `b` too, and `b` comes first.
+fn is_taken_twice(nearest: &Nearest, a: u32, b: u32) -> bool {
+    b < a && taken(nearest, b).any(|c| c == a)
 }
 
 /// For each root, whether its set's normals look inward.
