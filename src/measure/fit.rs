@@ -1,5 +1,7 @@
 //! `fit`: how far the input's points lie from the splats that cover them.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -56,32 +58,31 @@ pub struct Fit {
 #[must_use]
 pub fn fit(points: &[Vec3], asset: &Asset, reach: f64) -> Fit {
     let grid = PointGrid::new(points);
-    let found: Vec<Vec<(u32, f64)>> =
-        asset.splats.par_iter().map(|splat| covered(splat, &grid, points, reach)).collect();
-    let mut best = vec![f64::INFINITY; points.len()];
-    for (point, distance) in found.into_iter().flatten() {
-        let best = &mut best[point as usize];
-        *best = best.min(distance);
-    }
-    let mut distances: Vec<f64> = best.into_iter().filter(|distance| distance.is_finite()).collect();
+    // Distances as bits, which sort as they do: the least of them is the same whichever thread comes first.
+    let best: Vec<AtomicU64> = points.iter().map(|_| AtomicU64::new(f64::INFINITY.to_bits())).collect();
+    asset.splats.par_iter().for_each(|splat| {
+        for (point, distance) in covered(splat, &grid, points, reach) {
+            best[point as usize].fetch_min(distance.to_bits(), Ordering::Relaxed);
+        }
+    });
+    let distances = best.into_par_iter().map(|best| f64::from_bits(best.into_inner()));
+    let mut distances: Vec<f64> = distances.filter(|distance| distance.is_finite()).collect();
     distances.par_sort_unstable_by(f64::total_cmp);
     Fit { uncovered: points.len() - distances.len(), accuracy: accuracy(&distances) }
 }
 
 /// The points a splat covers within `reach`, with their distances.
-fn covered(splat: &Splat, grid: &PointGrid, points: &[Vec3], reach: f64) -> Vec<(u32, f64)> {
+fn covered(splat: &Splat, grid: &PointGrid, points: &[Vec3], reach: f64) -> impl Iterator<Item = (u32, f64)> {
     let (low, high) = bounds(splat, reach);
     let conics: Vec<_> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
-    grid.near(low, high)
-        .filter_map(|point| {
-            let local = splat.to_local(points[point as usize].as_dvec3());
-            let uv = local.truncate();
-            let distance = (local.z - splat.height(uv)).abs();
-            let inside = distance <= reach && splat.ellipse(uv) <= 1.0;
-            let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv)) || splat.partners_cut(uv);
-            (inside && !cut(uv)).then_some((point, distance))
-        })
-        .collect()
+    grid.near(low, high).filter_map(move |point| {
+        let local = splat.to_local(points[point as usize].as_dvec3());
+        let uv = local.truncate();
+        let distance = (local.z - splat.height(uv)).abs();
+        let inside = distance <= reach && splat.ellipse(uv) <= 1.0;
+        let cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv)) || splat.partners_cut(uv);
+        (inside && !cut(uv)).then_some((point, distance))
+    })
 }
 
 /// A box that holds everything within `reach` of a splat along its normal.

@@ -76,7 +76,8 @@ pub struct Cover {
 /// Chooses from the candidates, adding to them what no candidate covers.
 #[must_use]
 pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, effort: u8) -> (Cover, Choice) {
-    let areas: Vec<f64> = (0..grower.surface.pieces.len() as u32).map(|p| grower.surface.area(p)).collect();
+    let pieces = 0..grower.surface.pieces.len() as u32;
+    let areas: Vec<f64> = pieces.into_par_iter().map(|piece| grower.surface.area(piece)).collect();
     let mut choice = Choice::default();
     let mut times = vec![0_u32; areas.len()];
     let chosen = greedy(&candidates, &areas, &mut times);
@@ -111,10 +112,12 @@ impl Cover {
 
     /// The pieces that no other splat covers than these, ascending.
     pub(super) fn own(&self, these: &[usize]) -> Vec<u32> {
-        let lists = these.iter().map(|&index| self.candidates[index].pieces.as_slice());
-        let counted = lists.fold(Vec::new(), |counted, pieces| merged(&counted, pieces));
-        let own = counted.into_iter().filter(|&(piece, count)| self.times[piece as usize] == count);
-        own.map(|(piece, _)| piece).collect()
+        let times = |piece: u32| self.times[piece as usize] as usize;
+        let all = these.iter().flat_map(|&index| &self.candidates[index].pieces).copied();
+        let mut met: Vec<u32> = all.filter(|&piece| times(piece) <= these.len()).collect();
+        // A few runs that ascend, which a stable sort merges.
+        met.sort();
+        met.chunk_by(|a, b| a == b).filter(|same| times(same[0]) == same.len()).map(|same| same[0]).collect()
     }
 
     /// The area of the pieces that only this splat covers.
@@ -169,22 +172,6 @@ impl Cover {
         dropped.sort_unstable();
         self.chosen.retain(|index| dropped.binary_search(index).is_err());
         dropped.len()
-    }
-}
-
-/// Pieces, ascending, each with how often it was met, and met once more in another list.
-fn merged(counted: &[(u32, u32)], pieces: &[u32]) -> Vec<(u32, u32)> {
-    let mut merged = Vec::with_capacity(counted.len() + pieces.len());
-    let (mut old, mut new) = (counted.iter().peekable(), pieces.iter().peekable());
-    loop {
-        let piece = match (old.peek(), new.peek()) {
-            (None, None) => return merged,
-            (Some(&&(piece, _)), None) | (None, Some(&&piece)) => piece,
-            (Some(&&(one, _)), Some(&&other)) => one.min(other),
-        };
-        let before = old.next_if(|entry| entry.0 == piece).map_or(0, |entry| entry.1);
-        let here = u32::from(new.next_if(|next| **next == piece).is_some());
-        merged.push((piece, before + here));
     }
 }
 

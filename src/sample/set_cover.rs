@@ -13,6 +13,8 @@ mod search;
 #[cfg(test)]
 pub(super) mod tests;
 
+use rayon::prelude::*;
+
 use crate::analyse::surface::Rows;
 use alike::unlike;
 use decisive::decisive;
@@ -101,11 +103,9 @@ impl SetCover {
 fn covering(covered: &[&[u32]], some: &[u32], pieces: usize) -> Rows {
     let mut places = vec![None; pieces];
     (0_u32..).zip(some).for_each(|(place, &piece)| places[piece as usize] = Some(place));
+    let kept = |pieces: &&[u32]| pieces.iter().filter_map(|&piece| places[piece as usize]).collect();
+    let kept: Vec<Vec<u32>> = covered.par_iter().map(kept).collect();
     Rows::placed(some.len(), || {
-        let candidates = (0_u32..).zip(covered);
-        candidates.flat_map(|(index, pieces)| {
-            let kept = pieces.iter().filter_map(|&piece| places[piece as usize]);
-            kept.map(move |place| (place, index))
-        })
+        (0_u32..).zip(&kept).flat_map(|(index, places)| places.iter().map(move |&place| (place, index)))
     })
 }
