@@ -2,7 +2,7 @@
 //!
 //! The error that a file states is measured on the splats as a reader will decode them.
 
-use crate::bake::{Baked, Clock, Kept, Options, Progress, StageTime, bake};
+use crate::bake::{Baked, Clock, Kept, Looking, Options, Progress, StageTime, bake};
 use crate::error::{Error, Result};
 use crate::format::{self, quantize::Quantizer};
 use crate::ingest::Input;
@@ -35,9 +35,7 @@ pub struct Delivery {
 /// Those of [`bake`]; [`Error::Internal`] should the decoded splats break the bound.
 pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) -> Result<Delivery> {
     let rounding = |splat: &Splat, max_error| Quantizer::new(max_error).snap(splat).ok();
-    let mut sights = None;
-    let mut looking = |input: &Input, asset: &Asset| faults(input, asset, &mut sights);
-    let baked = bake(input, options, &rounding, &format::thrift::save, &mut looking, progress)?;
+    let baked = bake(input, options, &rounding, &format::thrift::save, &mut Onlooker::default(), progress)?;
     let mut clock = Clock::default();
     clock.stage(progress, "encode");
     let bytes = format::encode(&baked.asset)?;
@@ -58,17 +56,23 @@ pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) ->
     Ok(Delivery { bytes, asset, overlap, stages, baked })
 }
 
-/// The rays on which an asset of a mesh shows more or less than that once it is stored; `sights` holds
-/// what is known of the mesh.
-///
-/// A cloud has no surface to look at between its points.
-fn faults(input: &Input, asset: &Asset, sights: &mut Option<Sights>) -> Result<Faults> {
-    let Input::Mesh(mesh) = input else { return Ok(Faults::default()) };
-    let known = match sights {
-        Some(known) => known,
-        None => sights.insert(Sights::of(mesh)?),
-    };
-    known.faults(&format::snap(asset)?)
+/// Looks at assets as they are once they are stored.
+#[derive(Default)]
+struct Onlooker {
+    /// What is known of the input.
+    sights: Option<Sights>,
+}
+
+impl Looking for Onlooker {
+    fn at(&mut self, kept: &Kept<'_>) -> Result<()> {
+        self.sights = Some(Sights::of(surface(kept))?);
+        Ok(())
+    }
+
+    fn faults(&mut self, asset: &Asset) -> Result<Faults> {
+        let Some(sights) = &mut self.sights else { return Ok(Faults::default()) };
+        sights.faults(&format::snap(asset)?)
+    }
 }
 
 /// Measures the fit of the decoded splats and holds it against the bound.

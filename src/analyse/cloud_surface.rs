@@ -29,6 +29,8 @@ pub struct CloudSurface {
     pub surface: Surface,
     /// Points of the cloud that belong to no surface, ascending: outliers.
     pub left_out: Vec<u32>,
+    /// What the others tell of it by themselves, in the cloud's order, if they lie so far apart as was asked for.
+    pub discs: Option<Discs>,
     /// Segments of the lines, given or found and resampled, at which a sheet of the surface ends.
     pub edges: usize,
     /// Its borders and the rims of its holes, lines aside: there splats that cover its points may leave a hole.
@@ -67,7 +69,9 @@ struct Laid {
 /// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
 /// none. Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
 ///
-/// Neither the order of points and lines nor repeated points change anything but `left_out`.
+/// Its discs are told where half of the points stand for more than a margin of `sparse`, model units.
+///
+/// Neither the order of points and lines nor repeated points change anything but `left_out` and `discs`.
 /// Lines far from the cloud, and lines around which the points show no sheets, cut nothing.
 ///
 /// # Errors
@@ -78,9 +82,11 @@ pub fn cloud_surface(
     lines: Lines<'_>,
     noise: Option<f64>,
     reach: Option<Reach>,
+    sparse: Option<f64>,
 ) -> Result<CloudSurface> {
     let laid = Laid::of(cloud, source, lines, noise)?;
     let (left_out, open_places) = (laid.left_out(), laid.open_places());
+    let discs = sparse.filter(|&sparse| laid.is_sparse(sparse)).map(|_| laid.discs());
     let Laid { points, normals, cut, joined, joins, on_line, outlier, cleaned, .. } = laid;
     let sheet = Sheet {
         positions: &points.positions,
@@ -96,7 +102,7 @@ pub fn cloud_surface(
         Lines::Given(lines) if !lines.is_empty() => Some(matched(lines, edges, length, cleaned)),
         Lines::Given(_) | Lines::Found(_) => None,
     };
-    Ok(CloudSurface { surface, left_out, edges, open_places, matched })
+    Ok(CloudSurface { surface, left_out, discs, edges, open_places, matched })
 }
 
 /// The surface of a cloud as its points tell it by themselves: what splats that cover it have to fill, and
@@ -136,6 +142,12 @@ impl Laid {
         // Their neighbours are no longer needed.
         let Sided { points, normals, cut, cleaned, .. } = sided;
         Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, cleaned })
+    }
+
+    /// Whether half of the points have wider margins than this, model units.
+    fn is_sparse(&self, margin: f64) -> bool {
+        let wide = self.joined.iter().filter(|joined| f64::from(joined.margin) > margin).count();
+        2 * wide > self.joined.len()
     }
 
     fn left_out(&self) -> Vec<u32> {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::options::{Edges, Options};
 use super::{cloud_lines, given_lines};
-use crate::analyse::cloud_surface::{CloudDiscs, cloud_discs};
+use crate::analyse::cloud_surface::cloud_discs;
 use crate::error::Result;
 use crate::ingest::Input;
 use crate::model::discs::Discs;
@@ -36,14 +36,23 @@ pub fn kept<'a>(
     options: &Options,
     max_error: f64,
 ) -> Result<Kept<'a>> {
-    let whole = Cow::Borrowed(input);
     let Input::Cloud(cloud) = input else {
-        return Ok(Kept { input: whole, outliers: 0, discs: Discs::default() });
+        return Ok(Kept::of(input, &[], Discs::default()));
     };
     let given = given_lines(edges, &cloud.frame);
     let lines = cloud_lines(edges, &given, options.edge_angle, max_error);
-    let CloudDiscs { left_out, discs } = cloud_discs(cloud, options.normals.into(), lines, noise)?;
-    let outliers = left_out.len();
-    let input = if outliers > 0 { Cow::Owned(Input::Cloud(cloud.without(&left_out))) } else { whole };
-    Ok(Kept { input, outliers, discs })
+    let told = cloud_discs(cloud, options.normals.into(), lines, noise)?;
+    Ok(Kept::of(input, &told.left_out, told.discs))
+}
+
+impl<'a> Kept<'a> {
+    /// What is left of an input without some of its points, which ascend, with the discs of the others.
+    pub(super) fn of(input: &'a Input, left_out: &[u32], discs: Discs) -> Self {
+        let outliers = left_out.len();
+        let input = match input {
+            Input::Cloud(cloud) if outliers > 0 => Cow::Owned(Input::Cloud(cloud.without(left_out))),
+            Input::Cloud(_) | Input::Mesh(_) => Cow::Borrowed(input),
+        };
+        Self { input, outliers, discs }
+    }
 }

@@ -68,7 +68,7 @@ pub(super) struct Arguments {
     /// the splats across them make them, and only what the bound says of the input holds
     #[arg(long, visible_alias = "clip", value_enum, default_value_t)]
     clips: ClipsArgument,
-    /// What becomes of holes that pictures of a mesh's splats show, and of what shows beside its outline
+    /// What becomes of holes that pictures of the splats show, and of what shows beside the outline
     #[arg(long, value_enum, default_value_t)]
     holes: HolesArgument,
     /// Finds out how little a cover of the surface by the same candidates could cost, and says how far

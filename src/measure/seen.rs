@@ -26,7 +26,7 @@ pub struct Drawn {
     pub shaded: RgbImage,
     /// Its normals.
     pub normals: RgbImage,
-    depths: Depths,
+    pub(super) depths: Depths,
 }
 
 impl Drawn {

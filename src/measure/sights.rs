@@ -11,28 +11,29 @@ use super::holes::{self, Depths};
 use super::views::{SIDE, View, views};
 use crate::error::Result;
 use crate::model::asset::Asset;
-use crate::model::mesh::Mesh;
 use crate::model::sight::{Faults, Sight};
 use crate::model::splat::Splat;
+use crate::render::Camera;
 use crate::render::eye::Eye;
-use crate::render::input::{Model, Prepared, Style};
+use crate::render::input::{Met, Model, Prepared, Style};
 use crate::render::stops::Stops;
 
 /// Pixels that the bound spans at most in a view whose extra pixels count. A view along a needle magnifies
 /// it, and the bound with it: what stands out there is what the bound allows.
 const WIDEST: f64 = 4.0;
 
-/// What is known of a mesh in the views of [`views`] and in those between. Nine bytes a pixel.
+/// What is known of a model in the views of [`views`], and of a mesh in those between: slits are more than what
+/// a cloud tells of its surface. Nine bytes a pixel.
 pub struct Sights {
     looks: Vec<Look>,
     /// The splats that were last looked at.
     last: Option<Vec<Splat>>,
 }
 
-/// One view of a mesh, and the faults that splats last showed in it.
+/// One view of a model, and the faults that splats last showed in it.
 struct Look {
     view: View,
-    /// How far away the mesh lies.
+    /// How far away the model lies.
     depths: Depths,
     /// Whether what stands out beside the outline counts.
     outlined: bool,
@@ -42,23 +43,26 @@ struct Look {
 }
 
 impl Sights {
-    /// Looks at a mesh.
+    /// Looks at a mesh, or at the surface that a cloud tells of.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] for a view that cannot be drawn.
-    pub fn of(mesh: &Mesh) -> Result<Self> {
-        let model = Model::Mesh(mesh);
+    pub fn of(model: Model<'_>) -> Result<Self> {
         let input = Prepared::new(model, &Style::default());
-        let look = |(view, outlined): (View, bool)| {
-            let depths = Depths::new([SIDE; 2], input.met(&view.camera, [SIDE; 2])?);
-            Ok(Look { view, depths, outlined, open: Vec::new(), beside: Vec::new() })
+        let mut all = views(model);
+        let own = all.len();
+        if input.is_exact() {
+            let scale = model.cloud().frame.scale();
+            let moved: Vec<View> = all.iter().map(|view| between(view, scale)).collect();
+            all.extend(moved);
+        }
+        let cameras: Vec<Camera> = all.iter().map(|view| view.camera.clone()).collect();
+        let met = input.all_met(&cameras, [SIDE; 2])?;
+        let look = |(at, (view, met)): (usize, (View, Met))| {
+            let depths = Depths::new([SIDE; 2], met);
+            Look { view, depths, outlined: at < own, open: Vec::new(), beside: Vec::new() }
         };
-        let own = views(model);
-        let scale = model.cloud().frame.scale();
-        let moved: Vec<View> = own.iter().map(|view| between(view, scale)).collect();
-        let all = own.into_par_iter().map(|view| (view, true));
-        let all = all.chain(moved.into_par_iter().map(|view| (view, false)));
-        Ok(Self { looks: all.map(look).collect::<Result<_>>()?, last: None })
+        Ok(Self { looks: all.into_iter().zip(met).enumerate().map(look).collect(), last: None })
     }
 
     /// The rays of pixels that are missing or seen through, and of those that are extra, in the order of
@@ -101,7 +105,7 @@ impl Look {
         Ok(())
     }
 
-    /// The rays that meet the mesh and that no splat stops soon enough.
+    /// The rays that meet the model and that no splat stops soon enough.
     fn holes(
         &self,
         limits: &[f64],
@@ -157,7 +161,7 @@ fn others(some: &[Splat], than: &[Splat]) -> Vec<Splat> {
     some.iter().filter(|splat| !is_known(splat)).cloned().collect()
 }
 
-/// The rays that pass beside the mesh and that a splat stops.
+/// The rays that pass beside the model and that a splat stops.
 fn beside(limits: &[f64], stopped: &[Option<f64>], eye: &Eye) -> Vec<(usize, Sight)> {
     let extra = stopped.iter().enumerate().filter(|&(place, _)| limits[place] == f64::INFINITY);
     let sight = |(place, depth): (usize, &Option<f64>)| {
@@ -183,6 +187,8 @@ fn pixel(place: usize) -> [u32; 2] {
 mod tests {
     use super::*;
     use crate::measure::holes::Mark;
+    use crate::measure::planted;
+    use crate::measure::seen::Drawn;
     use crate::measure::seen::tests::{asset, disc, plane, squares};
     use crate::model::cloud::Cloud;
     use crate::model::frame::Frame;
@@ -190,12 +196,11 @@ mod tests {
     use glam::{DVec2, Vec3};
 
     /// How many pixels [`holes::compare`] marks as missing or seen through, and as extra.
-    fn counted(asset: &Asset, mesh: &Mesh) -> Result<[usize; 2]> {
-        let model = Model::Mesh(mesh);
+    fn counted(asset: &Asset, model: Model<'_>) -> Result<[usize; 2]> {
         let input = Prepared::new(model, &Style::default());
         let mut counts = [0; 2];
         for view in views(model) {
-            let depths = Depths::from(&input.visibility(&view.camera, [SIDE; 2])?);
+            let depths = Drawn::new(&input, view.clone())?.depths;
             let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
             let map = holes::compare(&depths, &splats, holes::behind(asset));
             counts[0] += map.places(&[Mark::Missing, Mark::Through]).count();
@@ -213,20 +218,44 @@ mod tests {
         let mut holed = whole.clone();
         holed.remove(5);
         holed.push(disc(DVec3::new(0.5, 0.1, 0.1), 0.02));
-        let mut known = Sights::of(&mesh)?;
+        let mut known = Sights::of(Model::Mesh(&mesh))?;
         let mut any = [0; 2];
         for splats in [holed.clone(), whole.clone(), holed[1..].to_vec(), holed] {
             let asset = asset(splats);
             let again = known.faults(&asset)?;
-            let mut afresh = Sights::of(&mesh)?;
+            let mut afresh = Sights::of(Model::Mesh(&mesh))?;
             assert_eq!(again, afresh.faults(&asset)?);
             afresh.looks.retain(|look| look.outlined);
             let own = |part: fn(&Look) -> usize| afresh.looks.iter().map(part).sum::<usize>();
             let found = [own(|look| look.open.len()), own(|look| look.beside.len())];
-            assert_eq!(found, counted(&asset, &mesh)?);
+            assert_eq!(found, counted(&asset, Model::Mesh(&mesh))?);
             (0..2).for_each(|n| any[n] = any[n].max(found[n]));
         }
         assert!(any.iter().all(|&count| count > 100), "{any:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn of_a_cloud_too_what_is_looked_for_is_what_is_counted() -> Result<()> {
+        let at =
+            |n: i32, height: f32| Vec3::new((n % 41 - 20) as f32 / 40.0, (n / 41 - 20) as f32 / 40.0, height);
+        let positions = (0..41 * 41).flat_map(|n| [at(n, 0.1), at(n, -0.1)]).collect();
+        let cloud = Cloud { positions, ..Cloud::default() };
+        let discs = planted::discs(&cloud);
+        let model = Model::Surface(&cloud, &discs);
+        let whole = [squares(0.1), squares(-0.1)].concat();
+        let mut faulty = whole.clone();
+        faulty.remove(5);
+        faulty.push(disc(DVec3::new(0.5, 0.1, 0.1), 0.1));
+        for (splats, any) in [(whole, false), (faulty, true)] {
+            let asset = asset(splats);
+            let mut known = Sights::of(model)?;
+            let Faults { open, beside } = known.faults(&asset)?;
+            assert_eq!(known.looks.len(), 26, "none between");
+            let found = [open.len(), beside.len()];
+            assert_eq!(found, counted(&asset, model)?);
+            assert!(found.iter().all(|&count| (count > 100) == any), "{found:?}");
+        }
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! From where holes and pictures are measured: the 26 directions of the cube.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::render::Camera;
 use crate::render::camera::Projection;
@@ -45,7 +46,7 @@ pub fn views(model: Model<'_>) -> Vec<View> {
     all.retain(|corner| *corner != DVec3::ZERO);
     all.sort_by_key(|corner| corner.abs().element_sum() as u32);
     let diagonal = model.diagonal();
-    all.into_iter().map(|corner| view(corner, model, diagonal)).collect()
+    all.into_par_iter().map(|corner| view(corner, model, diagonal)).collect()
 }
 
 /// The view from one corner of `{-1, 0, 1}³`.

@@ -1,17 +1,24 @@
 //! A cloud before a camera: the discs that its surface is known by.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::eye::{Eye, Ray};
 use super::input::{Met, color};
 use super::project::{self, Bound, Prism};
-use super::tiles::{self, Hit, Look, Scene};
+use super::tiles::{Hit, Look, Rect, Scene};
 use crate::model::cloud::Cloud;
 use crate::model::discs::{Disc, Discs};
 use crate::model::intersect::{self, LocalRay};
 
 /// A line within this many margins of a point ends its sheet, whatever lies between.
 const LINE_REACH: f32 = 2.0;
+
+/// Discs that all eyes look at before the next ones: they stay in the cache, and their pictures lie together.
+const BLOCK: usize = 1 << 14;
+
+/// What rounding moves a picture by at most, samples.
+const ROUNDING: f64 = 1e-6;
 
 /// How far discs are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,16 +35,65 @@ pub(super) struct DiscScene<'a> {
     discs: &'a Discs,
     eye: &'a Eye,
     extent: Extent,
+    /// Where the model's origin and its axes lie in an orthographic picture, in samples.
+    plane: [DVec2; 4],
+    /// Samples for each unit of an orthographic picture.
+    samples: f64,
+}
+
+/// A disc in view coordinates.
+struct Placed {
+    center: DVec3,
+    /// Unit.
+    normal: DVec3,
+    radius: f64,
+}
+
+impl Placed {
+    fn bound(&self, eye: &Eye) -> Option<Bound> {
+        let &Self { center, normal, radius } = self;
+        let (u, v) = normal.any_orthonormal_pair();
+        project::bound(
+            &Prism { center, half_axes: [radius * u, radius * v], normal, low: 0.0, high: 0.0 },
+            eye,
+        )
+    }
+
+    /// The way from its centre to where a ray meets it.
+    fn way(&self, ray: &Ray) -> Option<DVec3> {
+        let &Self { center, normal, radius } = self;
+        let lateral = (ray.at(center.z) - center.truncate()).extend(0.0);
+        // Along the view no way leads back toward the centre's own ray.
+        if ray.slope == DVec2::ZERO && lateral.length_squared() > radius * radius {
+            return None;
+        }
+        let local = LocalRay {
+            origin: DVec3::new(0.0, 0.0, lateral.dot(normal)),
+            direction: DVec3::new(0.0, 0.0, ray.direction().dot(normal)),
+        };
+        let s = intersect::plane_root(&local, radius);
+        let way = lateral + s * ray.direction();
+        (s <= radius && way.length_squared() <= radius * radius).then_some(way)
+    }
 }
 
 impl<'a> DiscScene<'a> {
     /// Places the discs of a cloud before an eye.
     pub(super) fn new(cloud: &'a Cloud, discs: &'a Discs, eye: &'a Eye, extent: Extent) -> Self {
-        Self { cloud, discs, eye, extent }
+        let samples = eye.samples_per_unit();
+        let across = |way: DVec3| samples * DVec2::new(eye.right.dot(way), -eye.up.dot(way));
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(across);
+        let plane = [eye.middle() - across(eye.position), axes[0], axes[1], axes[2]];
+        Self { cloud, discs, eye, extent, plane, samples }
     }
 
     fn center(&self, item: usize) -> DVec3 {
         self.eye.to_view(self.cloud.positions[item].as_dvec3())
+    }
+
+    fn placed(&self, item: usize) -> Placed {
+        let disc = self.discs.at(item);
+        Placed { center: self.center(item), normal: self.normal(disc), radius: self.radius(disc) }
     }
 
     /// A disc's normal in view coordinates; without one it faces the eye.
@@ -70,23 +126,82 @@ impl<'a> DiscScene<'a> {
         gap.holds(way) && self.discs.share(item, self.cloud.positions[item].as_dvec3(), far * way) >= 1.0
     }
 
-    /// What rays meet, surely or perhaps: see [`super::input::Prepared::met`].
-    pub(super) fn met(&self) -> Met {
-        let count = self.eye.size[0] as usize * self.eye.size[1] as usize;
-        let mut met = Met { surely: vec![f64::INFINITY; count], perhaps: vec![false; count] };
-        tiles::visit(self, self.eye, |place, item, ray, hit| {
-            let disc = self.discs.at(item);
-            met.perhaps[place] = true;
-            let direction = ray.direction();
-            let slant = (self.normal(disc).dot(direction) / direction.length()).abs();
-            let margin = f64::from(disc.margin) / self.radius(disc);
-            let surely = slant > f64::from(disc.turn) && hit.ellipse <= margin * margin;
-            if surely && !self.is_in_gap(item, ray, hit.depth) {
-                let deepest = hit.depth + f64::from(disc.sagitta()) / slant;
-                met.surely[place] = met.surely[place].min(deepest);
+    /// What rays meet, surely or perhaps, before each of some eyes: see [`super::input::Prepared::all_met`].
+    ///
+    /// All eyes look at a block of discs before the next, so that these are read from memory once.
+    pub(super) fn all_met(cloud: &'a Cloud, discs: &'a Discs, eyes: &'a [Eye]) -> Vec<Met> {
+        let before = |eye: &'a Eye| {
+            let count = eye.size[0] as usize * eye.size[1] as usize;
+            let met = Met { surely: vec![f64::INFINITY; count], perhaps: vec![false; count] };
+            (Self::new(cloud, discs, eye, Extent::Reach), met)
+        };
+        let mut looks: Vec<_> = eyes.iter().map(before).collect();
+        for first in (0..cloud.positions.len()).step_by(BLOCK) {
+            let block = first..cloud.positions.len().min(first + BLOCK);
+            looks.par_iter_mut().for_each(|(scene, met)| {
+                block.clone().for_each(|item| scene.meet(item, met));
+            });
+        }
+        looks.into_iter().map(|(_, met)| met).collect()
+    }
+
+    /// Adds what rays meet of one disc.
+    fn meet(&self, item: usize, met: &mut Met) {
+        let whole = Rect::whole(self.eye.size);
+        if self.eye.perspective {
+            let Some(bound) = self.bound(item) else { return };
+            let placed = self.placed(item);
+            return Rect::of(&bound, self.eye.size)
+                .samples_in(&whole, |place, sample| self.meet_at(item, &placed, (place, sample), met));
+        }
+        let (place, [origin, x, y, z]) = (self.cloud.positions[item].as_dvec3(), self.plane);
+        let middle = origin + place.x * x + place.y * y + place.z * z;
+        // Rounding must not lose a ray that grazes the rim.
+        let radius = self.samples * self.radius(self.discs.at(item)) + ROUNDING;
+        // Of a dense cloud many discs lie between the rays of all pixels, and most others meet one ray.
+        let nearest = middle.as_uvec2();
+        let to_ray = nearest.as_dvec2() + DVec2::splat(0.5) - middle;
+        if to_ray.length_squared() > radius * radius {
+            return;
+        }
+        if radius < 0.5 {
+            let [width, height] = self.eye.size;
+            let at = nearest.y as usize * width as usize + nearest.x as usize;
+            // What lies hardly before what is known tells nothing new.
+            let tells = |met: &Met| {
+                !met.perhaps[at] || self.center(item).z + self.radius(self.discs.at(item)) < met.surely[at]
+            };
+            if nearest.x < width && nearest.y < height && tells(met) {
+                self.meet_at(item, &self.placed(item), (at, nearest.to_array()), met);
             }
-        });
-        met
+            return;
+        }
+        let bound = Bound { min: middle - radius, max: middle + radius };
+        let placed = self.placed(item);
+        Rect::of(&bound, self.eye.size)
+            .samples_in(&whole, |place, sample| self.meet_at(item, &placed, (place, sample), met));
+    }
+
+    /// Adds what one ray meets of a disc, whose place in the picture comes with it.
+    fn meet_at(&self, item: usize, placed: &Placed, (place, sample): (usize, [u32; 2]), met: &mut Met) {
+        let hidden = |depth: f64, met: &Met| met.perhaps[place] && depth >= met.surely[place];
+        if hidden(placed.center.z - placed.radius, met) {
+            return;
+        }
+        let ray = self.eye.ray_through(sample);
+        let Some(way) = placed.way(&ray) else { return };
+        let depth = placed.center.z + way.z;
+        if hidden(depth, met) || depth < self.eye.near || !self.is_own(item, way) {
+            return;
+        }
+        met.perhaps[place] = true;
+        let (disc, direction) = (self.discs.at(item), ray.direction());
+        let slant = (placed.normal.dot(direction) / direction.length()).abs();
+        let within = way.length_squared() <= f64::from(disc.margin) * f64::from(disc.margin);
+        if within && slant > f64::from(disc.turn) && !self.is_in_gap(item, &ray, depth) {
+            let deepest = depth + f64::from(disc.sagitta()) / slant;
+            met.surely[place] = met.surely[place].min(deepest);
+        }
     }
 }
 
@@ -96,33 +211,93 @@ impl Scene for DiscScene<'_> {
     }
 
     fn bound(&self, item: usize) -> Option<Bound> {
-        let disc = self.discs.at(item);
-        let (normal, radius) = (self.normal(disc), self.radius(disc));
-        let (u, v) = normal.any_orthonormal_pair();
-        let half_axes = [radius * u, radius * v];
-        project::bound(&Prism { center: self.center(item), half_axes, normal, low: 0.0, high: 0.0 }, self.eye)
+        self.placed(item).bound(self.eye)
     }
 
     fn hit(&self, item: usize, ray: &Ray) -> Option<Hit> {
-        let disc = self.discs.at(item);
-        let (center, normal, radius) = (self.center(item), self.normal(disc), self.radius(disc));
-        let lateral = (ray.at(center.z) - center.truncate()).extend(0.0);
-        let local = LocalRay {
-            origin: DVec3::new(0.0, 0.0, lateral.dot(normal)),
-            direction: DVec3::new(0.0, 0.0, ray.direction().dot(normal)),
-        };
-        let s = intersect::plane_root(&local, radius);
-        if s > radius {
-            return None;
-        }
-        let way = lateral + s * ray.direction();
-        let ellipse = way.length_squared() / (radius * radius);
-        let depth = center.z + s;
-        let met = ellipse <= 1.0 && depth >= self.eye.near && self.is_own(item, way);
+        let placed = self.placed(item);
+        let way = placed.way(ray)?;
+        let depth = placed.center.z + way.z;
+        let ellipse = way.length_squared() / (placed.radius * placed.radius);
+        let met = depth >= self.eye.near && self.is_own(item, way);
         met.then_some(Hit { depth, at: DVec2::ZERO, ellipse, gives_way: 0.0 })
     }
 
     fn look(&self, item: usize, _at: DVec2) -> Look {
         Look { normal: self.normal(self.discs.at(item)), color: color(self.cloud, item) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::analyse::planted::random;
+    use crate::model::frame::Frame;
+    use crate::render::Camera;
+    use crate::render::camera::Projection;
+
+    /// Discs strewn through a ball, turned at random.
+    fn discs(radius: f32) -> (Cloud, Discs) {
+        let vector = |n: u64| Vec3::from([3 * n, 3 * n + 1, 3 * n + 2].map(|n| random(n) as f32));
+        let positions = (0..400).map(|n| 0.5 * vector(n)).collect();
+        let disc = |n: u64| Disc {
+            normal: vector(1000 + n).normalize(),
+            margin: radius * (1.5 + vector(2000 + n).x),
+            turn: 0.2 * vector(2000 + n).y.abs(),
+            open: n % 3 == 0,
+            gap: None,
+        };
+        (Cloud { positions, ..Cloud::default() }, Discs::new((0..400).map(disc).collect(), &[]))
+    }
+
+    /// As [`DiscScene::all_met`], ray by ray and disc by disc.
+    fn plainly(cloud: &Cloud, discs: &Discs, eye: &Eye) -> Met {
+        let scene = DiscScene::new(cloud, discs, eye, Extent::Reach);
+        let rays = (0..eye.size[1]).flat_map(|y| (0..eye.size[0]).map(move |x| eye.ray_through([x, y])));
+        let met = rays.map(|ray| {
+            let hits = (0..discs.all().len()).filter_map(|item| Some((item, scene.hit(item, &ray)?)));
+            hits.fold((f64::INFINITY, false), |(surely, _), (item, hit)| {
+                let (disc, direction) = (discs.at(item), ray.direction());
+                let slant = (scene.normal(disc).dot(direction) / direction.length()).abs();
+                let share = f64::from(disc.margin) / scene.radius(disc);
+                let counts = slant > f64::from(disc.turn) && hit.ellipse <= share * share;
+                let deepest = hit.depth + f64::from(disc.sagitta()) / slant;
+                (if counts { surely.min(deepest) } else { surely }, true)
+            })
+        });
+        let (surely, perhaps) = met.unzip();
+        Met { surely, perhaps }
+    }
+
+    fn eyes() -> [Eye; 2] {
+        let views = [Projection::Orthographic { height: 1.5 }, Projection::Perspective { fov_degrees: 40.0 }];
+        views.map(|projection| {
+            let (eye, target) = ([1.0, 2.0, 3.0], [0.1, 0.0, 0.0]);
+            let camera = Camera { eye, target, up: [0.0, 1.0, 0.0], projection, near: None };
+            Eye::new(&camera, &Frame::default(), [96, 80]).unwrap()
+        })
+    }
+
+    #[test]
+    fn discs_are_met_as_ray_by_ray() {
+        // Of some pixels, of about one, and of a part of one.
+        for radius in [0.05, 0.01, 0.003] {
+            let (cloud, discs) = discs(radius);
+            let eyes = eyes();
+            for (eye, found) in eyes.iter().zip(DiscScene::all_met(&cloud, &discs, &eyes)) {
+                let truth = plainly(&cloud, &discs, eye);
+                assert_eq!(found.perhaps, truth.perhaps);
+                assert!(truth.perhaps.iter().any(|perhaps| *perhaps));
+                for (found, truth) in found.surely.iter().zip(&truth.surely) {
+                    // Of those within a pixel the depth may be that of one behind, a few radii at most.
+                    let looser = if radius < 0.01 { 8.0 * f64::from(radius) } else { 1e-9 };
+                    assert!(found == truth || (*found - truth).abs() <= looser, "{found} {truth}");
+                }
+            }
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::camera::Camera;
 use super::constants::{self, MATTE};
@@ -168,7 +169,15 @@ impl<'a> Prepared<'a> {
         matches!(self.kind, Kind::Mesh(..))
     }
 
-    /// What rays meet, surely or perhaps.
+    /// As [`Self::all_met`], before one camera.
+    ///
+    /// # Errors
+    /// As [`cpu::render`].
+    pub fn met(&self, camera: &Camera, size: [u32; 2]) -> Result<Met> {
+        Ok(self.all_met(std::slice::from_ref(camera), size)?.swap_remove(0))
+    }
+
+    /// What rays meet, surely or perhaps, before each of some cameras.
     ///
     /// A cloud tells its surface no better than its discs do. Across one that is seen so flat that the
     /// surface may turn away from the eye over it, the outline runs: somewhere, and the discs stand out
@@ -178,14 +187,19 @@ impl<'a> Prepared<'a> {
     ///
     /// # Errors
     /// As [`cpu::render`].
-    pub fn met(&self, camera: &Camera, size: [u32; 2]) -> Result<Met> {
-        let eye = self.eye(camera, &Settings::plain(size))?;
+    pub fn all_met(&self, cameras: &[Camera], size: [u32; 2]) -> Result<Vec<Met>> {
+        let eyes = cameras.iter().map(|camera| self.eye(camera, &Settings::plain(size)));
+        let eyes: Vec<Eye> = eyes.collect::<Result<_>>()?;
         Ok(match &self.kind {
             Kind::Mesh(mesh, normals) => {
-                let surely = tiles::depths(&Facets::new(mesh, &eye, normals), &eye);
-                Met { perhaps: surely.iter().map(|depth| depth.is_finite()).collect(), surely }
+                let surely = |eye: &Eye| tiles::depths(&Facets::new(mesh, eye, normals), eye);
+                let met = |surely: Vec<f64>| Met {
+                    perhaps: surely.iter().map(|depth| depth.is_finite()).collect(),
+                    surely,
+                };
+                eyes.par_iter().map(|eye| met(surely(eye))).collect()
             }
-            Kind::Cloud(cloud, discs) => DiscScene::new(cloud, discs, &eye, Extent::Reach).met(),
+            Kind::Cloud(cloud, discs) => DiscScene::all_met(cloud, discs, &eyes),
         })
     }
 

@@ -108,7 +108,7 @@ mod tests {
     fn discs(positions: Vec<Vec3>, edges: &[Vec<DVec3>]) -> Vec<(Vec3, Splat)> {
         let cloud = Cloud { positions, ..Cloud::default() };
         let (source, given) = (NormalSource::Estimate, Given::Given(edges));
-        let surface = cloud_surface(&cloud, source, given, None, None).unwrap().surface;
+        let surface = cloud_surface(&cloud, source, given, None, None, None).unwrap().surface;
         let grower = Grower {
             surface: &surface,
             budget: Budget::new(BOUND, Clips::Curved),
