@@ -56,7 +56,7 @@ impl Sights {
             let moved: Vec<View> = all.iter().map(|view| between(view, scale)).collect();
             all.extend(moved);
         }
-        let cameras: Vec<Camera> = all.iter().map(|view| view.camera.clone()).collect();
+        let cameras: Vec<Camera> = all.iter().map(|view| view.camera).collect();
         let met = input.all_met(&cameras, [SIDE; 2])?;
         let look = |(at, (view, met)): (usize, (View, Met))| {
             let depths = Depths::new([SIDE; 2], met);
