@@ -315,6 +315,10 @@ fn piece_length(max_error: f64, diagonal: f64) -> f64 {
 /// those takes a neighbour pass.
 const DENSE: f64 = 0.5;
 
+/// Points of a cloud that stand for more than this many pixels around do not tell by how few of them splats stand
+/// out between them.
+const SPARSE: f64 = 2.5;
+
 /// Faults are looked for and mended at most so many times: what mends one is cut a little otherwise once
 /// it is stored, and may show elsewhere. Five do on the models measured, but for what no splats mend.
 const MENDINGS: usize = 6;
@@ -346,7 +350,7 @@ struct Analysed {
     features: Found,
     left_out: Vec<u32>,
     /// What points tell of the surface by themselves, nothing for a mesh; `None` for a cloud so dense that nothing
-    /// shows between them, and for one that shows no surface.
+    /// shows between them, or so sparse that they do not tell what does, and for one that shows no surface.
     discs: Option<Discs>,
     open_places: Vec<OpenPlace>,
 }
@@ -378,9 +382,10 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             let given = given_lines(&meant.edges, &cloud.frame);
             let lines = cloud_lines(&meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
-            let sparse = meant.noise.map(|_| DENSE * COARSEST_CLOSED * diagonal);
+            let told =
+                meant.noise.map(|_| DENSE * COARSEST_CLOSED * diagonal..SPARSE * COARSEST_CLOSED * diagonal);
             let CloudSurface { surface, left_out, discs, edges, open_places, matched } =
-                cloud_surface(cloud, options.normals.into(), lines, meant.noise, Some(reach), sparse)?;
+                cloud_surface(cloud, options.normals.into(), lines, meant.noise, Some(reach), told)?;
             // Creases found before the cloud was smoothed are not the user's.
             let matched = matched.filter(|_| matches!(options.edges, Edges::Given(_)));
             let features = Found { feature_edges: edges, matched };

@@ -1,6 +1,8 @@
 //! From a point cloud to its surface: tell its points apart along feature lines, join them, leave out
 //! outliers.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -29,7 +31,7 @@ pub struct CloudSurface {
     pub surface: Surface,
     /// Points of the cloud that belong to no surface, ascending: outliers.
     pub left_out: Vec<u32>,
-    /// What the others tell of it by themselves, in the cloud's order, if they lie so far apart as was asked for.
+    /// What the others tell of it by themselves, in the cloud's order, if they lie as far apart as was asked for.
     pub discs: Option<Discs>,
     /// Segments of the lines, given or found and resampled, at which a sheet of the surface ends.
     pub edges: usize,
@@ -69,7 +71,7 @@ struct Laid {
 /// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
 /// none. Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
 ///
-/// Its discs are told where half of the points stand for more than a margin of `sparse`, model units.
+/// Its discs are told where the median of its points' margins, model units, is one of `told`.
 ///
 /// Neither the order of points and lines nor repeated points change anything but `left_out` and `discs`.
 /// Lines far from the cloud, and lines around which the points show no sheets, cut nothing.
@@ -82,11 +84,11 @@ pub fn cloud_surface(
     lines: Lines<'_>,
     noise: Option<f64>,
     reach: Option<Reach>,
-    sparse: Option<f64>,
+    told: Option<Range<f64>>,
 ) -> Result<CloudSurface> {
     let laid = Laid::of(cloud, source, lines, noise)?;
     let (left_out, open_places) = (laid.left_out(), laid.open_places());
-    let discs = sparse.filter(|&sparse| laid.is_sparse(sparse)).map(|_| laid.discs());
+    let discs = told.filter(|told| told.contains(&laid.median_margin())).map(|_| laid.discs());
     let Laid { points, normals, cut, joined, joins, on_line, outlier, cleaned, .. } = laid;
     let sheet = Sheet {
         positions: &points.positions,
@@ -144,10 +146,15 @@ impl Laid {
         Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, cleaned })
     }
 
-    /// Whether half of the points have wider margins than this, model units.
-    fn is_sparse(&self, margin: f64) -> bool {
-        let wide = self.joined.iter().filter(|joined| f64::from(joined.margin) > margin).count();
-        2 * wide > self.joined.len()
+    /// Half of the points have no wider margins, model units; 0 for no points.
+    fn median_margin(&self) -> f64 {
+        let mut margins: Vec<f32> = self.joined.iter().map(|joined| joined.margin).collect();
+        let middle = margins.len() / 2;
+        if margins.is_empty() {
+            0.0
+        } else {
+            f64::from(*margins.select_nth_unstable_by(middle, f32::total_cmp).1)
+        }
     }
 
     fn left_out(&self) -> Vec<u32> {

@@ -1,6 +1,6 @@
 //! A cloud before a camera: the discs that its surface is known by.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 use rayon::prelude::*;
 
 use super::eye::{Eye, Ray};
@@ -178,8 +178,15 @@ impl<'a> DiscScene<'a> {
         }
         let bound = Bound { min: middle - radius, max: middle + radius };
         let placed = self.placed(item);
-        Rect::of(&bound, self.eye.size)
-            .samples_in(&whole, |place, sample| self.meet_at(item, &placed, (place, sample), met));
+        let ([across, up, ahead], wide) = (placed.normal.to_array(), radius * radius);
+        Rect::of(&bound, self.eye.size).samples_in(&whole, |place, sample| {
+            // Rays meet the disc within an ellipse of the picture, told here without a division.
+            let off = UVec2::from(sample).as_dvec2() + DVec2::splat(0.5) - middle;
+            let slope = across * off.x - up * off.y;
+            if (off.length_squared() - wide) * ahead * ahead + slope * slope <= 0.0 {
+                self.meet_at(item, &placed, (place, sample), met);
+            }
+        });
     }
 
     /// Adds what one ray meets of a disc, whose place in the picture comes with it.
