@@ -4,6 +4,7 @@ mod bound;
 pub mod found_lines;
 mod growing;
 pub mod kept;
+pub mod looking;
 pub mod meant;
 pub mod noise;
 pub mod options;
@@ -47,11 +48,12 @@ use crate::sample::cover::{Choice, cover};
 use crate::sample::edge_cases::EdgeCases;
 use crate::sample::lower_bound::LowerBound;
 use crate::sample::scout::Begun;
-use crate::tolerance::COARSEST_CLOSED;
 pub use bound::model_error;
 pub use found_lines::found_lines;
 use growing::Growing;
 pub use kept::{Kept, kept};
+pub use looking::{Blind, Looking};
+use looking::{MENDINGS, is_looked_at, told_margins};
 use meant::check_noise;
 pub use meant::{Made, Meant, meant};
 pub use options::{Colors, DEFAULT_EFFORT, Edges, Holes, MaxError, Meaning, Normals, Options};
@@ -59,8 +61,8 @@ use partnered::{partnered, rule};
 
 /// Told how the work goes on; all methods may be called from the baking thread only.
 pub trait Progress {
-    /// A stage begins (`read`, `analyse`, `look`, `scout`, `sample`, `cover`, `bound`, `clip`, `seal`, `partners`, `encode`,
-    /// `measure`, `write`).
+    /// A stage begins (`read`, `analyse`, `look`, `scout`, `sample`, `cover`, `bound`, `clip`, `seal`, `partners`,
+    /// `encode`, `measure`, `write`).
     fn stage(&mut self, name: &'static str);
     /// The stage now at hand has done `done` of `total` units of its own.
     fn advance(&mut self, done: u64, total: u64);
@@ -129,34 +131,6 @@ pub type Rounding<'a> = dyn Fn(&Splat, f64) -> Option<Splat> + Sync + 'a;
 /// do. For those who store nothing: `|_, _, _| Ok(())`.
 pub type Saving<'a> = dyn Fn(&mut [Splat], f64, &mut dyn Trial) -> Result<()> + Sync + 'a;
 
-/// Whoever looks at an asset beside the input.
-pub trait Looking {
-    /// Looks at what a bake keeps of the input, or of what stands in for that, before it is covered.
-    ///
-    /// # Errors
-    /// For an input that cannot be looked at.
-    fn at(&mut self, kept: &Kept<'_>) -> Result<()>;
-
-    /// The rays on which more or less is seen of an asset than of that.
-    ///
-    /// # Errors
-    /// For an asset that cannot be looked at.
-    fn faults(&mut self, asset: &Asset) -> Result<Faults>;
-}
-
-/// Sees nothing.
-pub struct Blind;
-
-impl Looking for Blind {
-    fn at(&mut self, _: &Kept<'_>) -> Result<()> {
-        Ok(())
-    }
-
-    fn faults(&mut self, _: &Asset) -> Result<Faults> {
-        Ok(Faults::default())
-    }
-}
-
 /// Bakes an input to splats that keep the error bound when rounded by `rounding`, and show neither hole nor
 /// excess to `looking` but where no splats that keep the bound can do without.
 ///
@@ -180,8 +154,8 @@ pub fn bake(
     check_noise(&meant, options.denoise, max_error)?;
     let Analysed { mut surface, marked, features, left_out, discs, open_places } =
         analyse(&meant, options, max_error, diagonal)?;
-    let mendings = if discs.is_some() { mendings(options) } else { 0 };
-    if let Some(discs) = discs.filter(|_| mendings > 0) {
+    let mendings = if discs.is_some() { MENDINGS } else { 0 };
+    if let Some(discs) = discs {
         clock.stage(progress, "look");
         looking.at(&Kept::of(&meant.input, &left_out, discs))?;
     }
@@ -310,28 +284,6 @@ fn piece_length(max_error: f64, diagonal: f64) -> f64 {
     PIECE_SHARE * expected_radius(max_error, diagonal)
 }
 
-/// Points of a cloud that stand for less than this many pixels around lie so densely that splats which cover all of
-/// them show nothing amiss: no fault in 2 million points of fandisk, nor in 4 million of a head. To look at
-/// those takes a neighbour pass.
-const DENSE: f64 = 0.5;
-
-/// Points of a cloud that stand for more than this many pixels around do not tell by how few of them splats stand
-/// out between them.
-const SPARSE: f64 = 2.5;
-
-/// Faults are looked for and mended at most so many times: what mends one is cut a little otherwise once
-/// it is stored, and may show elsewhere. Five do on the models measured, but for what no splats mend.
-const MENDINGS: usize = 6;
-
-/// How many times faults are looked for and mended.
-fn mendings(options: &Options) -> usize {
-    match (options.holes, options.clips) {
-        (Holes::Close, Clips::Curved | Clips::Straight) => MENDINGS,
-        // What partners cut away is not known before they are found.
-        (Holes::Leave, _) | (_, Clips::Partners) => 0,
-    }
-}
-
 /// How far points of a cloud stand for others: over areas as wide as a mesh's pieces are long.
 fn thinning(max_error: f64, diagonal: f64) -> Reach {
     Reach { radius: 0.5 * piece_length(max_error, diagonal), offset: THIN_OFFSET * max_error }
@@ -349,8 +301,7 @@ struct Analysed {
     marked: Option<Marked>,
     features: Found,
     left_out: Vec<u32>,
-    /// What points tell of the surface by themselves, nothing for a mesh; `None` for a cloud so dense that nothing
-    /// shows between them, or so sparse that they do not tell what does, and for one that shows no surface.
+    /// What points tell of the surface by themselves, nothing for a mesh; `None` where nobody looks.
     discs: Option<Discs>,
     open_places: Vec<OpenPlace>,
 }
@@ -375,15 +326,14 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             };
             let surface = marked.surface();
             let features = Found { matched, ..found };
-            let (marked, discs) = (Some(marked), Some(Discs::default()));
+            let (marked, discs) = (Some(marked), is_looked_at(options).then(Discs::default));
             Ok(Analysed { surface, marked, features, discs, ..Analysed::default() })
         }
         Input::Cloud(cloud) => {
             let given = given_lines(&meant.edges, &cloud.frame);
             let lines = cloud_lines(&meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
-            let told =
-                meant.noise.map(|_| DENSE * COARSEST_CLOSED * diagonal..SPARSE * COARSEST_CLOSED * diagonal);
+            let told = told_margins(options, meant.noise, diagonal);
             let CloudSurface { surface, left_out, discs, edges, open_places, matched } =
                 cloud_surface(cloud, options.normals.into(), lines, meant.noise, Some(reach), told)?;
             // Creases found before the cloud was smoothed are not the user's.

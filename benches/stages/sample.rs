@@ -20,19 +20,18 @@ pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
         let input = Input::Cloud(cloud::cloud(points));
         let rounding = |splat: &_, max_error| Quantizer::new(max_error).snap(splat).ok();
         let mut outcome = Ok(0);
-        let seconds =
-            || match bake(&input, &Options::default(), &rounding, &|_, _, _| Ok(()), &mut Blind, &mut Silent)
-            {
-                Ok(baked) => {
-                    outcome = Ok(baked.asset.splats.len());
-                    let chosen = baked.stages.iter().filter(|stage| STAGES.contains(&stage.name.as_str()));
-                    chosen.map(|stage| stage.wall_seconds).sum()
-                }
-                Err(error) => {
-                    outcome = Err(error);
-                    0.0
-                }
-            };
+        let options = Options::default();
+        let seconds = || match bake(&input, &options, &rounding, &|_, _, _| Ok(()), &mut Blind, &mut Silent) {
+            Ok(baked) => {
+                outcome = Ok(baked.asset.splats.len());
+                let chosen = baked.stages.iter().filter(|stage| STAGES.contains(&stage.name.as_str()));
+                chosen.map(|stage| stage.wall_seconds).sum()
+            }
+            Err(error) => {
+                outcome = Err(error);
+                0.0
+            }
+        };
         let positions = &input.cloud().positions;
         beside_timed(criterion, "sample", points, seconds, || floor::neighbour_pass(positions));
         let splats = outcome?;

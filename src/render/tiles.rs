@@ -139,21 +139,16 @@ pub fn draw<S: Scene, T: Copy + Send + Sync>(
 pub fn depths<S: Scene>(scene: &S, eye: &Eye) -> Vec<f64> {
     let [width, height] = eye.size;
     let mut depths = vec![f64::INFINITY; width as usize * height as usize];
-    visit(scene, eye, |place, _, _, hit| depths[place] = depths[place].min(hit.depth));
-    depths
-}
-
-/// Calls `met` with each hit, item by item: its sample, rows from the top, the item and the ray.
-pub fn visit<S: Scene>(scene: &S, eye: &Eye, mut met: impl FnMut(usize, usize, &Ray, Hit)) {
     let all = Tile { area: Rect::whole(eye.size), eye, mix: Mix::Nearest };
     for item in 0..scene.len() {
         let Some(bound) = scene.bound(item) else { continue };
         all.samples(&Rect::of(&bound, eye.size), |place, ray| {
             if let Some(hit) = scene.hit(item, ray) {
-                met(place, item, ray, hit);
+                depths[place] = depths[place].min(hit.depth);
             }
         });
     }
+    depths
 }
 
 /// A half-open rectangle of samples.
