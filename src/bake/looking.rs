@@ -83,7 +83,7 @@ mod tests {
         };
         let [close, leave] =
             [Holes::Close, Holes::Leave].map(|holes| Options { holes, ..Options::default() });
-        assert_eq!([20_000, 100_000, 1_200_000].map(|count| looked(count, &close)), [false, true, false]);
+        assert_eq!([20_000, 100_000, 1_600_000].map(|count| looked(count, &close)), [false, true, false]);
         let partners = Options { clips: Clips::Partners, ..Options::default() };
         assert!(!looked(100_000, &leave) && !looked(100_000, &partners));
     }
