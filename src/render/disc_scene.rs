@@ -223,22 +223,23 @@ impl Scene for DiscScene<'_> {
 mod tests {
     #![allow(clippy::unwrap_used)]
 
-    use glam::Vec3;
-
     use super::*;
-    use crate::analyse::planted::random;
     use crate::model::frame::Frame;
     use crate::render::Camera;
     use crate::render::camera::Projection;
 
-    /// Discs strewn through a ball, turned at random.
+    /// Multiples of these, whole numbers left off, spread evenly (the sequence R₃ of Roberts 2018).
+    const SPREAD: DVec3 =
+        DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3);
+
+    /// Discs strewn through a cube, turned every way.
     fn discs(radius: f32) -> (Cloud, Discs) {
-        let vector = |n: u64| Vec3::from([3 * n, 3 * n + 1, 3 * n + 2].map(|n| random(n) as f32));
+        let vector = |n: u32| (2.0 * (f64::from(n) * SPREAD).fract() - 1.0).as_vec3();
         let positions = (0..400).map(|n| 0.5 * vector(n)).collect();
-        let disc = |n: u64| Disc {
-            normal: vector(1000 + n).normalize(),
-            margin: radius * (1.5 + vector(2000 + n).x),
-            turn: 0.2 * vector(2000 + n).y.abs(),
+        let disc = |n: u32| Disc {
+            normal: vector(1000 + 7 * n).normalize(),
+            margin: radius * (1.5 + vector(2000 + 13 * n).x),
+            turn: 0.2 * vector(2000 + 13 * n).y.abs(),
             open: n.is_multiple_of(3),
             gap: None,
         };
