@@ -23,6 +23,7 @@ pub mod distinct;
 pub mod doubled;
 mod edge_paths;
 pub mod edges;
+mod flips;
 pub mod given_lines;
 mod least_axis;
 pub mod line_cut;

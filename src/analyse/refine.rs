@@ -4,11 +4,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::edges::{Edge, Edges, Half};
+use super::flips::flip;
 use super::surface::NONE;
 use super::weld::Welded;
 
-/// Rounds of halving after which refinement stops whatever the lengths.
-const ROUNDS: usize = 12;
+/// Rounds of halving after which refinement stops whatever the lengths: twelve for the longest, and as many
+/// for edges that wait.
+const ROUNDS: usize = 24;
 
 /// Which edges are to be halved.
 pub struct Fineness<'a> {
@@ -43,13 +45,15 @@ pub struct Refined {
 /// many triangles.
 ///
 /// A triangle with one, two or three long edges becomes two, three or four; new vertices lie
-/// on the old edges, so the surface stays the same. `marked` tells which edges, in the order
-/// of [`Edges::of`], are feature edges.
+/// on the old edges, so the surface stays the same. Inside the faces there were at first, edges are turned
+/// where that makes pieces less slender, and those that cross a slender piece wait until its long sides are
+/// halved: so one as long as a thousand such lengths and narrower than one becomes two thousand
+/// pieces, not a million. `marked` tells which edges, in the order of [`Edges::of`], are feature edges.
 #[must_use]
 pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>) -> Refined {
     let mut part_of: Vec<u32> = (0..welded.triangles.len() as u32).collect();
+    let mut edges = Edges::of(&welded.triangles);
     for _ in 0..ROUNDS {
-        let edges = Edges::of(&welded.triangles);
         let on_line = on_line(&welded, &edges, &marked);
         let long = |edge: &Edge| {
             let [a, b] = welded.places(edge.ends);
@@ -58,6 +62,7 @@ pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>
             edges.halves(edge).iter().any(|half| (fineness.too_long)(&side(half)))
         };
         let long: Vec<bool> = edges.edges.par_iter().map(long).collect();
+        let long = without_waiting(&welded, &edges, &long, &part_of);
         let split = long.iter().filter(|long| **long).count();
         if split == 0 || welded.triangles.len() + 2 * split > fineness.most {
             break;
@@ -68,9 +73,40 @@ pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>
             .map(|sides| 1 + sides.iter().filter(|side| **side != NONE).count());
         part_of =
             part_of.iter().zip(parts).flat_map(|(&whole, parts)| std::iter::repeat_n(whole, parts)).collect();
-        marked = halve(&mut welded, &edges, &middles, &marked);
+        let features = halved_features(&edges, &middles, &marked);
+        split_all(&mut welded, &edges, &middles);
+        edges = flip(&mut welded, &part_of);
+        marked = marks(&edges, &features);
     }
     Refined { welded, marked, part_of }
+}
+
+/// Of edges that are too long, those that do not wait for another: one inside a face waits where just one
+/// other side of a triangle beside it is too long, and that is part of the face's rim, or longer. Once that
+/// is halved, an edge to its middle may be short.
+fn without_waiting(welded: &Welded, edges: &Edges, long: &[bool], part_of: &[u32]) -> Vec<bool> {
+    let numbers: Vec<u32> = (0..edges.edges.len() as u32).collect();
+    let sides = of_halves(edges, &numbers, welded.triangles.len());
+    let inside = |edge: &Edge| {
+        let part = |half: Half| part_of[half.face as usize];
+        edges.pair(edge).is_some_and(|(a, b)| part(a) == part(b))
+    };
+    // From the one that waits longest: no two are alike.
+    let rank = |number: u32| {
+        let edge = &edges.edges[number as usize];
+        (!inside(edge), length(welded, edge), edge.ends)
+    };
+    let waits = |number: u32, half: &Half| {
+        let others = sides[half.face as usize].iter().filter(|&&side| side != number && long[side as usize]);
+        let mut others = others.map(|&side| rank(side));
+        let only = others.next().filter(|_| others.next().is_none());
+        only.is_some_and(|other| rank(number) < other)
+    };
+    let goes = |(number, edge): (usize, &Edge)| {
+        let held = || inside(edge) && edges.halves(edge).iter().any(|half| waits(number as u32, half));
+        long[number] && !held()
+    };
+    edges.edges.par_iter().enumerate().map(goes).collect()
 }
 
 /// Which vertices lie on feature edges or where the surface ends.
@@ -85,11 +121,20 @@ fn on_line(welded: &Welded, edges: &Edges, marked: &[bool]) -> Vec<bool> {
 /// of the finer mesh are feature edges, given those of the mesh.
 pub(super) fn halve(welded: &mut Welded, edges: &Edges, middles: &[u32], marked: &[bool]) -> Vec<bool> {
     let features = halved_features(edges, middles, marked);
+    split_all(welded, edges, middles);
+    marks(&Edges::of(&welded.triangles), &features)
+}
+
+/// Splits the triangles at the middles of their edges, given for each edge or [`NONE`].
+fn split_all(welded: &mut Welded, edges: &Edges, middles: &[u32]) {
     let sides = of_halves(edges, middles, welded.triangles.len());
     let sides: Vec<_> = sides.into_iter().map(|side| side.map(|m| (m != NONE).then_some(m))).collect();
     welded.triangles = split_triangles(&welded.triangles, &sides);
-    let refined = Edges::of(&welded.triangles);
-    refined.edges.iter().map(|edge| features.binary_search(&edge.ends).is_ok()).collect()
+}
+
+/// Which edges are among some, sorted.
+fn marks(edges: &Edges, features: &[[u32; 2]]) -> Vec<bool> {
+    edges.edges.iter().map(|edge| features.binary_search(&edge.ends).is_ok()).collect()
 }
 
 /// Appends the middle of an edge's ends, moved by an offset; its index.
