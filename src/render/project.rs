@@ -85,10 +85,11 @@ fn cut_box_extent(prism: &Prism, eye: &Eye) -> Option<[DVec2; 2]> {
     edges_extent(EDGES.into_iter().map(|edge| edge.map(corner)), eye)
 }
 
-/// The bound of a triangle, or `None` when nothing of it is in front of the near plane.
+/// The bound of a convex polygon, or `None` when nothing of it is in front of the near plane.
 #[must_use]
-pub fn triangle_bound([a, b, c]: [DVec3; 3], eye: &Eye) -> Option<Bound> {
-    edges_extent([[a, b], [b, c], [c, a]].into_iter(), eye).map(|plane| to_samples(plane, eye))
+pub fn polygon_bound<const N: usize>(corners: [DVec3; N], eye: &Eye) -> Option<Bound> {
+    let sides = (0..N).map(|n| [corners[n], corners[(n + 1) % N]]);
+    edges_extent(sides, eye).map(|plane| to_samples(plane, eye))
 }
 
 /// The extent of a convex body's edges in front of the near plane: of their ends there, and
@@ -226,6 +227,6 @@ mod tests {
             high: 0.5,
         };
         assert_eq!(bound(&prism, &eye(true, 0.05)), None);
-        assert!(triangle_bound([DVec3::ZERO, DVec3::X, DVec3::Y], &eye(true, 0.05)).is_none());
+        assert!(polygon_bound([DVec3::ZERO, DVec3::X, DVec3::Y], &eye(true, 0.05)).is_none());
     }
 }

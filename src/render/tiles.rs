@@ -48,6 +48,13 @@ pub trait Scene: Sync {
     fn len(&self) -> usize;
     /// The screen bound of one, or `None` when the near plane hides it.
     fn bound(&self, item: usize) -> Option<Bound>;
+    /// Visits bounds that together hold as much of one as [`Self::bound`], and perhaps fewer samples; some of them
+    /// more than once.
+    fn bounds(&self, item: usize, visit: &mut dyn FnMut(&Bound)) {
+        if let Some(bound) = self.bound(item) {
+            visit(&bound);
+        }
+    }
     /// The nearest hit of one in front of the near plane.
     fn hit(&self, item: usize, ray: &Ray) -> Option<Hit>;
     /// How one looks at a hit.
@@ -141,11 +148,12 @@ pub fn depths<S: Scene>(scene: &S, eye: &Eye) -> Vec<f64> {
     let mut depths = vec![f64::INFINITY; width as usize * height as usize];
     let all = Tile { area: Rect::whole(eye.size), eye, mix: Mix::Nearest };
     for item in 0..scene.len() {
-        let Some(bound) = scene.bound(item) else { continue };
-        all.samples(&Rect::of(&bound, eye.size), |place, ray| {
-            if let Some(hit) = scene.hit(item, ray) {
-                depths[place] = depths[place].min(hit.depth);
-            }
+        scene.bounds(item, &mut |bound| {
+            all.samples(&Rect::of(bound, eye.size), |place, ray| {
+                if let Some(hit) = scene.hit(item, ray) {
+                    depths[place] = depths[place].min(hit.depth);
+                }
+            });
         });
     }
     depths
@@ -176,6 +184,12 @@ impl Rect {
     /// All samples of a picture.
     pub(super) fn whole([width, height]: [u32; 2]) -> Self {
         Self { x: [0, width], y: [0, height] }
+    }
+
+    /// How many samples.
+    pub(super) fn count(&self) -> u32 {
+        let side = |[from, to]: [u32; 2]| to.saturating_sub(from);
+        side(self.x) * side(self.y)
     }
 
     /// Calls `visit` with each of these samples that lies in an area: its place in the area's rows, and its
