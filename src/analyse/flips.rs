@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::edges::{Edges, Half};
+use super::edges::{Edge, Edges, Half};
 use super::weld::Welded;
 
 /// The angles that face an edge from both sides add up to half a turn, and their cotangents to 0, where
@@ -23,8 +23,7 @@ pub(super) fn flip(welded: &mut Welded, part_of: &[u32]) -> Edges {
     let mut edges = Edges::of(&welded.triangles);
     for _ in 0..MOST_PASSES {
         let mut touched = vec![false; welded.triangles.len()];
-        let inside = edges.edges.iter().filter_map(|edge| edges.pair(edge));
-        for (a, b) in inside.filter(|(a, b)| part_of[a.face as usize] == part_of[b.face as usize]) {
+        for (a, b) in edges.edges.iter().filter_map(|edge| inside(&edges, edge, part_of)) {
             let faces = [a.face, b.face].map(|face| face as usize);
             if faces.iter().any(|&face| touched[face]) {
                 continue;
@@ -41,6 +40,11 @@ pub(super) fn flip(welded: &mut Welded, part_of: &[u32]) -> Edges {
         edges = Edges::of(&welded.triangles);
     }
     edges
+}
+
+/// The two sides of an edge between two pieces of one face.
+pub(super) fn inside(edges: &Edges, edge: &Edge, part_of: &[u32]) -> Option<(Half, Half)> {
+    edges.pair(edge).filter(|(a, b)| part_of[a.face as usize] == part_of[b.face as usize])
 }
 
 /// The two triangles at an edge, cut the other way, if that is better.

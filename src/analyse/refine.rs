@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::edges::{Edge, Edges, Half};
-use super::flips::flip;
+use super::flips::{flip, inside};
 use super::surface::NONE;
 use super::weld::Welded;
 
@@ -87,10 +87,7 @@ pub fn refine(mut welded: Welded, mut marked: Vec<bool>, fineness: &Fineness<'_>
 fn without_waiting(welded: &Welded, edges: &Edges, long: &[bool], part_of: &[u32]) -> Vec<bool> {
     let numbers: Vec<u32> = (0..edges.edges.len() as u32).collect();
     let sides = of_halves(edges, &numbers, welded.triangles.len());
-    let inside = |edge: &Edge| {
-        let part = |half: Half| part_of[half.face as usize];
-        edges.pair(edge).is_some_and(|(a, b)| part(a) == part(b))
-    };
+    let inside = |edge: &Edge| inside(edges, edge, part_of).is_some();
     // From the one that waits longest: no two are alike.
     let rank = |number: u32| {
         let edge = &edges.edges[number as usize];
