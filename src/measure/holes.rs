@@ -5,6 +5,9 @@
 //! with one of the other set among its eight neighbours. Where one part of the input hides
 //! another, the set has no outline: such pixels are compared.
 //!
+//! A part of a mesh thinner than a pixel may slip between the rays; its outline is then every pixel that it touches
+//! with none of the set around, and the band one more on either side.
+//!
 //! A cloud tells where its surface is no better than its discs do ([`Prepared::met`]): there the band is
 //! as wide as the outline is uncertain. It holds the pixels whose ray may meet the surface and may miss
 //! it, and one more on either side.
@@ -85,10 +88,11 @@ pub struct Depths {
     size: [u32; 2],
     /// View depths in model units, rows from the top; infinite where the ray may meet nothing.
     depths: Vec<f64>,
-    /// Whether the ray may meet anything.
+    /// As [`Met::perhaps`].
     perhaps: Vec<bool>,
 }
 
+/// Of what has no part thinner than a pixel.
 impl From<&Visibility> for Depths {
     fn from(seen: &Visibility) -> Self {
         let depths = seen.seen.iter().map(|hit| hit.map_or(f64::INFINITY, |hit| hit.depth)).collect();

@@ -36,11 +36,7 @@ impl Drawn {
     /// [`crate::Error::Usage`] for a view that cannot be drawn.
     pub fn new(input: &Prepared<'_>, view: View) -> Result<Self> {
         let own = input.survey(&view.camera, [SIDE; 2])?;
-        let depths = if input.is_exact() {
-            Depths::from(&own.visibility)
-        } else {
-            Depths::new([SIDE; 2], input.met(&view.camera, [SIDE; 2])?)
-        };
+        let depths = Depths::new([SIDE; 2], input.met(&view.camera, [SIDE; 2])?);
         Ok(Self { view, shaded: opaque(own.shaded), normals: opaque(own.normals), depths })
     }
 }

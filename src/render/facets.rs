@@ -3,10 +3,11 @@
 use glam::{DVec2, DVec3};
 
 use super::eye::{Eye, Ray};
-use super::input::color;
+use super::input::{Met, color};
 use super::mesh_normals::MeshNormals;
 use super::project::{self, Bound};
-use super::tiles::{Hit, Look, Rect, Scene};
+use super::slivers::Slivers;
+use super::tiles::{self, Hit, Look, Rect, Scene};
 use crate::model::mesh::Mesh;
 
 /// Bounds of up to so many samples are not worth halving.
@@ -29,6 +30,19 @@ impl<'a> Facets<'a> {
     pub(super) fn new(mesh: &'a Mesh, eye: &'a Eye, normals: &'a MeshNormals<'a>) -> Self {
         let places = mesh.vertices.positions.iter().map(|p| eye.to_view(p.as_dvec3())).collect();
         Self { mesh, eye, places, normals }
+    }
+
+    /// What rays meet, and the pixels of what slips between them.
+    pub(super) fn met(&self) -> Met {
+        let surely = tiles::depths(self, self.eye);
+        let met = surely.iter().map(|depth| depth.is_finite()).collect();
+        let mut slivers = Slivers::beside(met, self.eye.size);
+        for item in 0..self.len() {
+            if let Some(polygon) = project::triangle(self.corners(item), self.eye) {
+                slivers.add(&polygon);
+            }
+        }
+        Met { surely, perhaps: slivers.touched() }
     }
 
     fn corners(&self, item: usize) -> [DVec3; 3] {
@@ -125,7 +139,6 @@ mod tests {
     use crate::render::Camera;
     use crate::render::camera::Projection;
     use crate::render::input::Normals;
-    use crate::render::tiles;
 
     /// A fan of slender triangles, as the flat end of a turned part has.
     fn fan() -> Mesh {

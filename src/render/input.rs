@@ -15,7 +15,7 @@ use super::mesh_normals::MeshNormals;
 use super::picture::{Picture, Survey, Visibility};
 use super::settings::Settings;
 use super::shade;
-use super::tiles::{self, Mix};
+use super::tiles::Mix;
 use crate::error::Result;
 use crate::model::cloud::Cloud;
 use crate::model::discs::{Disc, Discs};
@@ -108,13 +108,13 @@ enum Kind<'a> {
     Cloud(&'a Cloud, Cow<'a, Discs>),
 }
 
-/// What rays surely meet of a model, and may meet: the same of a mesh, not of a cloud. Rows from the top.
+/// What rays surely meet of a model, and may meet. Rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Met {
     /// How deep what each pixel's ray surely meets first lies at most, model units; infinite where it may
     /// meet nothing.
     pub surely: Vec<f64>,
-    /// Whether the ray may meet anything.
+    /// Whether the ray may meet anything, or the pixel shows a part of a mesh that slips between all rays near.
     pub perhaps: Vec<bool>,
 }
 
@@ -179,6 +179,9 @@ impl<'a> Prepared<'a> {
 
     /// What rays meet, surely or perhaps, before each of some cameras.
     ///
+    /// Of a mesh they surely meet all that they may. Where it is thinner than a pixel, it may touch pixels whose
+    /// rays miss it, as do those of the eight around: its outline runs there all the same.
+    ///
     /// A cloud tells its surface no better than its discs do. Across one that is seen so flat that the
     /// surface may turn away from the eye over it, the outline runs: somewhere, and the discs stand out
     /// there. So rays may meet such a disc, but not surely; nor do they one that is open beyond its margin,
@@ -192,12 +195,7 @@ impl<'a> Prepared<'a> {
         let eyes: Vec<Eye> = eyes.collect::<Result<_>>()?;
         Ok(match &self.kind {
             Kind::Mesh(mesh, normals) => {
-                let surely = |eye: &Eye| tiles::depths(&Facets::new(mesh, eye, normals), eye);
-                let met = |surely: Vec<f64>| Met {
-                    perhaps: surely.iter().map(|depth| depth.is_finite()).collect(),
-                    surely,
-                };
-                eyes.par_iter().map(|eye| met(surely(eye))).collect()
+                eyes.par_iter().map(|eye| Facets::new(mesh, eye, normals).met()).collect()
             }
             Kind::Cloud(cloud, discs) => DiscScene::all_met(cloud, discs, &eyes),
         })

@@ -32,6 +32,7 @@ mod composite;
 mod partner;
 mod project;
 mod shade;
+mod slivers;
 mod smooth;
 mod splat;
 mod tiles;

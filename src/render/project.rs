@@ -92,26 +92,50 @@ pub fn polygon_bound<const N: usize>(corners: [DVec3; N], eye: &Eye) -> Option<B
     edges_extent(sides, eye).map(|plane| to_samples(plane, eye))
 }
 
+/// The corners of a triangle's picture in samples, some of them repeated, or `None` when nothing of it is in front of
+/// the near plane.
+#[must_use]
+pub fn triangle(corners: [DVec3; 3], eye: &Eye) -> Option<[DVec2; 4]> {
+    let (mut shown, mut count) = ([DVec2::ZERO; 4], 0);
+    let flip = DVec2::new(1.0, -1.0) * eye.samples_per_unit();
+    let mut take = |point: DVec3| {
+        // What the near plane cuts off of three corners leaves four at most.
+        shown[count..].fill(eye.middle() + flip * place(point, eye));
+        count += 1;
+    };
+    for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
+        if a.z >= eye.near {
+            take(a);
+        }
+        if let Some(crossing) = near_crossing(a, b, eye.near) {
+            take(crossing);
+        }
+    }
+    (count > 0).then_some(shown)
+}
+
+/// Where the near plane cuts an edge.
+fn near_crossing(a: DVec3, b: DVec3, near: f64) -> Option<DVec3> {
+    let (da, db) = (a.z - near, b.z - near);
+    ((da < 0.0) != (db < 0.0)).then(|| (a + (b - a) * (da / (da - db))).truncate().extend(near))
+}
+
+/// Where a point shows in the picture's plane.
+fn place(point: DVec3, eye: &Eye) -> DVec2 {
+    if eye.perspective { point.truncate() / point.z } else { point.truncate() }
+}
+
 /// The extent of a convex body's edges in front of the near plane: of their ends there, and
 /// of their crossings with the plane.
 fn edges_extent(edges: impl Iterator<Item = [DVec3; 2]>, eye: &Eye) -> Option<[DVec2; 2]> {
     let mut extent: Option<[DVec2; 2]> = None;
     let mut take = |point: DVec3| {
-        let place = if eye.perspective { point.truncate() / point.z } else { point.truncate() };
+        let place = place(point, eye);
         extent = Some(extent.map_or([place; 2], |old| join(old, [place; 2])));
     };
     for [a, b] in edges {
-        let (da, db) = (a.z - eye.near, b.z - eye.near);
-        if da >= 0.0 {
-            take(a);
-        }
-        if db >= 0.0 {
-            take(b);
-        }
-        if (da < 0.0) != (db < 0.0) {
-            let crossing = a + (b - a) * (da / (da - db));
-            take(crossing.truncate().extend(eye.near));
-        }
+        [a, b].into_iter().filter(|end| end.z >= eye.near).for_each(&mut take);
+        near_crossing(a, b, eye.near).into_iter().for_each(&mut take);
     }
     extent
 }
@@ -158,9 +182,8 @@ mod tests {
         Eye::new(&camera, &Frame::default(), [640, 480]).unwrap()
     }
 
-    fn place(point: DVec3, eye: &Eye) -> DVec2 {
-        let plane = if eye.perspective { point.truncate() / point.z } else { point.truncate() };
-        eye.middle() + plane * DVec2::new(1.0, -1.0) * eye.samples_per_unit()
+    fn in_samples(point: DVec3, eye: &Eye) -> DVec2 {
+        eye.middle() + place(point, eye) * DVec2::new(1.0, -1.0) * eye.samples_per_unit()
     }
 
     /// Points of the quadric over rings of the domain.
@@ -201,7 +224,7 @@ mod tests {
             let bound = bound(&prism, &eye);
             let points = points(center, axes, radii, curvature);
             let shown: Vec<DVec2> =
-                points.iter().filter(|p| p.z >= eye.near).map(|p| place(*p, &eye)).collect();
+                points.iter().filter(|p| p.z >= eye.near).map(|p| in_samples(*p, &eye)).collect();
             for place in &shown {
                 let bound = bound.unwrap();
                 let inside = place.cmpge(bound.min - 1e-6).all() && place.cmple(bound.max + 1e-6).all();
