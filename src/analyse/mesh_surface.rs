@@ -12,7 +12,7 @@ use super::refine::{Fineness, Refined, Side, refine};
 use super::split::split;
 use super::surface::Surface;
 use super::weld::{Welded, weld};
-use super::worth::{Worth, drop_needless};
+use super::worth::{Worth, carry_folds_on, drop_needless};
 use crate::model::mesh::Mesh;
 
 /// Which edges of a mesh are feature edges, beside its borders.
@@ -104,6 +104,7 @@ impl Marked {
             let edges = Edges::of(&welded.triangles);
             drop_needless(&welded, &edges, &making.worth, LONG * shortest, &mut marked);
             chains::drop_short(&welded.positions, &edges, *shortest, &mut marked);
+            carry_folds_on(&welded, &edges, &making.worth, &mut marked);
             found.feature_edges = marked.iter().filter(|mark| **mark).count();
         }
         (Self { welded, marked, max_error: making.worth.max_error }, found)

@@ -8,6 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
+use super::edge_paths::EdgePaths;
 use super::edges::{Edges, face_normals};
 use super::marks::Marks;
 use super::surface::NONE;
@@ -50,8 +51,8 @@ const SHARPER: f64 = 2.0;
 /// of one splat.
 const FOLDED: f64 = 0.26;
 
-/// Where no splat fits beside a crease, it matters if its faces turn from each other by more than this (cosine
-/// of 90°): a splat over it cannot be had at all.
+/// A crease whose faces turn from each other by more than this (cosine of 90°) matters where no splat fits beside it,
+/// and wherever one over the two faces misses them: such a splat cannot be had at all.
 const BACK: f64 = 0.0;
 
 /// Places along each side of a face that are looked at, less one.
@@ -71,13 +72,7 @@ const COARSE: usize = 4;
 /// so `long`, model units, fewer sharp places are asked for.
 pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f64, marked: &mut [bool]) {
     let chains = chains(welded.positions.len(), edges, marked);
-    let patches = Patches {
-        welded,
-        edges,
-        sides: sides(edges, welded.triangles.len()),
-        normals: face_normals(&welded.positions, &welded.triangles),
-        marked,
-    };
+    let patches = Patches::new(welded, edges, marked);
     let needless: Vec<bool> = chains
         .par_iter()
         .map_init(
@@ -93,6 +88,27 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f6
         .collect();
     let drop = |chain: &Chain| chain.edges.iter().for_each(|&edge| marked[edge as usize] = false);
     chains.iter().zip(needless).filter(|(_, needless)| *needless).map(|(chain, _)| chain).for_each(drop);
+}
+
+/// Marks folds that are worth a cut and lead on from a feature edge: splats are cut along them whether or not they are
+/// lines, and those that touch a line are to be cut along lines alone.
+pub fn carry_folds_on(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
+    let patches = Patches::new(welded, edges, marked);
+    let folds = EdgePaths::new(welded, edges, |index| {
+        let pair = edges.pair(&edges.edges[index]).filter(|_| !marked[index]);
+        pair.is_some_and(|(left, right)| {
+            patches.folds(left.face, right.face) && patches.fold_misses(left.face, right.face, worth)
+        })
+    });
+    let lines = edges.edges.iter().zip(&*marked).filter(|(_, mark)| **mark);
+    let mut open: Vec<u32> = lines.flat_map(|(edge, _)| edge.ends).collect();
+    while let Some(vertex) = open.pop() {
+        for &fold in folds.around(vertex) {
+            if !std::mem::replace(&mut marked[fold as usize], true) {
+                open.push(folds.beyond(fold, vertex));
+            }
+        }
+    }
 }
 
 /// For each face, the edges along its sides.
@@ -125,13 +141,22 @@ struct Disc {
     over: bool,
 }
 
-impl Patches<'_> {
+impl<'a> Patches<'a> {
+    fn new(welded: &'a Welded, edges: &'a Edges, marked: &'a [bool]) -> Self {
+        let normals = face_normals(&welded.positions, &welded.triangles);
+        Self { welded, edges, sides: sides(edges, welded.triangles.len()), normals, marked }
+    }
+
     /// Whether splats that stop at an edge reach farther than one that goes over it.
     fn is_sharp(&self, index: u32, worth: &Worth<'_>, visited: &mut Marks) -> bool {
         let edge = &self.edges.edges[index as usize];
         let Some((left, right)) = self.edges.pair(edge) else { return true };
         let [a, b] = self.welded.places(edge.ends);
         let middle = 0.5 * (a + b);
+        let folds = self.folds(left.face, right.face);
+        if folds && self.fold_misses(left.face, right.face, worth) {
+            return true;
+        }
         let mut misfit = |radius: f64, over: bool, faces: &[u32]| {
             let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
             patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
@@ -144,8 +169,19 @@ impl Patches<'_> {
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
         });
-        let found = fitted.take(DECISIVE).reduce(|deeper, next| deeper || next);
-        found.unwrap_or(self.normals[left.face as usize].dot(self.normals[right.face as usize]) < BACK)
+        fitted.take(DECISIVE).reduce(|deeper, next| deeper || next).unwrap_or(folds)
+    }
+
+    /// Whether two faces turn back from each other.
+    fn folds(&self, one: u32, other: u32) -> bool {
+        self.normals[one as usize].dot(self.normals[other as usize]) < BACK
+    }
+
+    /// Whether a splat over two faces that do misses them by too much.
+    fn fold_misses(&self, one: u32, other: u32, worth: &Worth<'_>) -> bool {
+        let places: Vec<DVec3> = self.lattice(one).chain(self.lattice(other)).collect();
+        let normal = (self.normals[one as usize] + self.normals[other as usize]).normalize_or_zero();
+        normal == DVec3::ZERO || (worth.misfit)(&places, normal) > LEAST_MISS * worth.max_error
     }
 
     /// Places within a disc on the faces that the surface joins to some, and the mean of those
@@ -189,6 +225,8 @@ impl Patches<'_> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
     use glam::Vec3;
 
@@ -295,6 +333,42 @@ mod tests {
         let nothing = |_: &[DVec3], _: DVec3| f64::INFINITY;
         assert_eq!(kept(&roof(1.1), &[10], &nothing).0, LENGTH as usize, "95 degrees");
         assert_eq!(kept(&roof(0.9), &[10], &nothing).0, 0, "84 degrees");
+    }
+
+    #[test]
+    fn a_fold_is_worth_a_cut_however_badly_splats_fit_beside_it() {
+        let roof = |slope: f32| -> Vec<(f32, f32)> {
+            (-10..=10_i8).map(|n| (f32::from(n), -slope * f32::from(n).abs())).collect()
+        };
+        let poorly = |places: &[DVec3], normal: DVec3| 0.19 + 0.01 * plane(places, normal);
+        assert_eq!(kept(&roof(1.1), &[10], &poorly).0, LENGTH as usize, "95 degrees");
+        assert_eq!(kept(&roof(0.9), &[10], &poorly).0, 0, "84 degrees");
+        let low: Vec<(f32, f32)> =
+            (-50..=50_i8).map(|n| (0.03 * f32::from(n), if n == 0 { 0.04 } else { 0.0 })).collect();
+        assert_eq!(kept(&low, &[50], &plane).0, 0, "lower than the bound");
+    }
+
+    #[test]
+    fn folds_lead_on_from_lines_and_from_nowhere_else() {
+        let roof: Vec<(f32, f32)> =
+            (-10..=10_i8).map(|n| (f32::from(n), -1.5 * f32::from(n).abs())).collect();
+        let across = roof.len() as u32;
+        let mut welded = prism(&roof);
+        // Flat but for the steps between these.
+        let (first, last) = (10, 30);
+        for (step, row) in (0..).zip(welded.positions.chunks_exact_mut(roof.len())) {
+            row.iter_mut().filter(|_| !(first..=last).contains(&step)).for_each(|place| place.y = 0.0);
+        }
+        let edges = Edges::of(&welded.triangles);
+        let worth = Worth { reach: 6.0, max_error: 0.2, misfit: &plane };
+        let ridge = |step: u32| edges.find(step * across + 10, (step + 1) * across + 10).unwrap();
+        let mut marked = vec![false; edges.edges.len()];
+        carry_folds_on(&welded, &edges, &worth, &mut marked);
+        assert!(!marked.contains(&true), "it leaves no line");
+        marked[ridge(first - 1)] = true;
+        carry_folds_on(&welded, &edges, &worth, &mut marked);
+        let along: Vec<u32> = (0..LENGTH).filter(|&step| marked[ridge(step)]).collect();
+        assert_eq!(along, (first - 1..last).collect::<Vec<_>>());
     }
 
     #[test]
