@@ -8,7 +8,7 @@ use qsplat::bake::{Clips, DEFAULT_EFFORT, MaxError, Options, Shapes, Silent};
 use qsplat::fit::pose::Pose;
 use qsplat::format::quantize::Quantizer;
 use qsplat::format::{Limits, decode, encode};
-use qsplat::measure::holes::{self, Mark};
+use qsplat::measure::holes::{self, Depths, Mark};
 use qsplat::measure::views::{SIDE, views};
 use qsplat::model::asset::{Accuracy, Asset};
 use qsplat::model::splat::Splat;
@@ -188,8 +188,8 @@ fn missing(model: &Model, asset: &Asset) -> Result<u64> {
     let mut missing = 0;
     for view in views(input) {
         let splats = cpu::visibility(asset, &view.camera, [SIDE; 2])?;
-        let own = prepared.visibility(&view.camera, [SIDE; 2])?;
-        let map = holes::compare(&(&own).into(), &splats, holes::behind(asset));
+        let own = Depths::new([SIDE; 2], prepared.met(&view.camera, [SIDE; 2])?);
+        let map = holes::compare(&own, &splats, holes::behind(asset));
         missing += map.count(Mark::Missing) + map.count(Mark::Through);
     }
     Ok(missing)

@@ -92,18 +92,10 @@ pub struct Depths {
     perhaps: Vec<bool>,
 }
 
-/// Of what has no part thinner than a pixel.
-impl From<&Visibility> for Depths {
-    fn from(seen: &Visibility) -> Self {
-        let depths = seen.seen.iter().map(|hit| hit.map_or(f64::INFINITY, |hit| hit.depth)).collect();
-        let perhaps = seen.seen.iter().map(Option::is_some).collect();
-        Self { size: seen.size, depths, perhaps }
-    }
-}
-
 impl Depths {
-    /// From what all rays meet.
-    pub(super) fn new(size: [u32; 2], met: Met) -> Self {
+    /// From what all rays of a picture meet.
+    #[must_use]
+    pub fn new(size: [u32; 2], met: Met) -> Self {
         Self { size, depths: met.surely, perhaps: met.perhaps }
     }
 
@@ -264,6 +256,12 @@ mod tests {
         Visibility { size: [rows[0].len() as u32, rows.len() as u32], seen }
     }
 
+    /// How deep what rays hit lies, where nothing else is touched.
+    fn depths(seen: &Visibility) -> Depths {
+        let depths = seen.seen.iter().map(|hit| hit.map_or(f64::INFINITY, |hit| hit.depth)).collect();
+        Depths { size: seen.size, depths, perhaps: seen.seen.iter().map(Option::is_some).collect() }
+    }
+
     /// The marks as rows.
     fn rows(map: &HoleMap) -> Vec<String> {
         let letter = |mark: &Mark| match mark {
@@ -282,7 +280,7 @@ mod tests {
             seen(&["........", "........", "...11111", "...11111", "...11111", "...11111", "...11111"]);
         let splats =
             seen(&["5.......", "........", ".5......", "...11111", "...11.51", "...11111", "..111111"]);
-        let map = compare(&Depths::from(&input), &splats, 2.0);
+        let map = compare(&depths(&input), &splats, 2.0);
         let expected = ["e       ", "  ||||||", " e||||||", "  ||   |", "  || mt|", "  ||   |", "  ||||||"];
         assert_eq!(rows(&map), expected);
         assert_eq!([Mark::Missing, Mark::Extra, Mark::Through].map(|mark| map.count(mark)), [1, 2, 1]);
@@ -294,10 +292,10 @@ mod tests {
     fn depth_beside_a_step_is_not_through() {
         let input = seen(&["1111111", "1111444", "1111444", "1111444", "1111111"]);
         let splats = seen(&["1111111", "1111444", "1114444", "1114414", "1111111"]);
-        let near = compare(&Depths::from(&input), &splats, 2.0);
+        let near = compare(&depths(&input), &splats, 2.0);
         assert_eq!(near.count(Mark::Through), 0, "the step lies within a pixel");
         let splats = seen(&["1111111", "1144444", "1114444", "1114444", "1111111"]);
-        let far = compare(&Depths::from(&input), &splats, 2.0);
+        let far = compare(&depths(&input), &splats, 2.0);
         assert_eq!(far.faults().collect::<Vec<_>>(), [(2, 1)]);
     }
 
@@ -308,12 +306,12 @@ mod tests {
             rows_of(["........", "........", "...11111", "...11111", "...11111", "...11111", "...11111"]);
         let splats =
             rows_of(["5.......", ".......5", ".5......", "........", "........", "........", "........"]);
-        let mut depths = Depths::from(&input);
+        let mut perhaps = depths(&input);
         for (at, row) in [(2, 0), (3, 3), (2, 5)] {
-            depths.depths[row * 8 + at] = f64::INFINITY;
-            depths.perhaps[row * 8 + at] = true;
+            perhaps.depths[row * 8 + at] = f64::INFINITY;
+            perhaps.perhaps[row * 8 + at] = true;
         }
-        let map = compare(&depths, &splats, 2.0);
+        let map = compare(&perhaps, &splats, 2.0);
         let expected = ["e|||    ", " |||||||", " e||||||", "  |||mm|", " ||||mm|", " |||mmm|", " |||||||"];
         assert_eq!(rows(&map), expected);
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use qsplat::measure::holes::{self, Mark};
+use qsplat::measure::holes::{self, Depths, Mark};
 use qsplat::measure::views;
 use qsplat::model::asset::Asset;
 use qsplat::model::mesh::Mesh;
@@ -49,8 +49,8 @@ pub fn compare(mesh: &Mesh, asset: &Asset, side: u32) -> Seen {
     let input = Prepared::new(Model::Mesh(mesh), &Style::default());
     for view in views::views(Model::Mesh(mesh)) {
         let splats = cpu::visibility(asset, &view.camera, [side; 2]).unwrap();
-        let own = input.visibility(&view.camera, [side; 2]).unwrap();
-        let map = holes::compare(&(&own).into(), &splats, holes::behind(asset));
+        let own = Depths::new([side; 2], input.met(&view.camera, [side; 2]).unwrap());
+        let map = holes::compare(&own, &splats, holes::behind(asset));
         seen.compared += map.compared();
         seen.missing += map.count(Mark::Missing);
         seen.extra += map.count(Mark::Extra);
