@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
 use super::edge_paths::EdgePaths;
-use super::edges::{Edges, face_normals};
+use super::edges::{Edges, Half, face_normals};
 use super::marks::Marks;
 use super::surface::NONE;
 use super::weld::Welded;
@@ -94,12 +94,11 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f6
 /// lines, and those that touch a line are to be cut along lines alone.
 pub fn carry_folds_on(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
     let patches = Patches::new(welded, edges, marked);
-    let folds = EdgePaths::new(welded, edges, |index| {
-        let pair = edges.pair(&edges.edges[index]).filter(|_| !marked[index]);
-        pair.is_some_and(|(left, right)| {
-            patches.folds(left.face, right.face) && patches.fold_misses(left.face, right.face, worth)
-        })
-    });
+    let pairs = edges.edges.par_iter().map(|edge| edges.pair(edge));
+    let misses =
+        pairs.map(|pair| pair.is_some_and(|(left, right)| patches.fold_misses([left, right], worth)));
+    let misses: Vec<bool> = misses.collect();
+    let folds = EdgePaths::new(welded, edges, |index| misses[index]);
     let lines = edges.edges.iter().zip(&*marked).filter(|(_, mark)| **mark);
     let mut open: Vec<u32> = lines.flat_map(|(edge, _)| edge.ends).collect();
     while let Some(vertex) = open.pop() {
@@ -153,8 +152,7 @@ impl<'a> Patches<'a> {
         let Some((left, right)) = self.edges.pair(edge) else { return true };
         let [a, b] = self.welded.places(edge.ends);
         let middle = 0.5 * (a + b);
-        let folds = self.folds(left.face, right.face);
-        if folds && self.fold_misses(left.face, right.face, worth) {
+        if self.fold_misses([left, right], worth) {
             return true;
         }
         let mut misfit = |radius: f64, over: bool, faces: &[u32]| {
@@ -169,19 +167,26 @@ impl<'a> Patches<'a> {
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
         });
-        fitted.take(DECISIVE).reduce(|deeper, next| deeper || next).unwrap_or(folds)
+        fitted
+            .take(DECISIVE)
+            .reduce(|deeper, next| deeper || next)
+            .unwrap_or_else(|| self.folds([left, right]))
     }
 
-    /// Whether two faces turn back from each other.
-    fn folds(&self, one: u32, other: u32) -> bool {
-        self.normals[one as usize].dot(self.normals[other as usize]) < BACK
+    /// Whether the faces of two sides turn back from each other.
+    fn folds(&self, sides: [Half; 2]) -> bool {
+        let [left, right] = sides.map(|side| self.normals[side.face as usize]);
+        left.dot(right) < BACK
     }
 
-    /// Whether a splat over two faces that do misses them by too much.
-    fn fold_misses(&self, one: u32, other: u32, worth: &Worth<'_>) -> bool {
-        let places: Vec<DVec3> = self.lattice(one).chain(self.lattice(other)).collect();
-        let normal = (self.normals[one as usize] + self.normals[other as usize]).normalize_or_zero();
-        normal == DVec3::ZERO || (worth.misfit)(&places, normal) > LEAST_MISS * worth.max_error
+    /// Whether they do, and a splat over both misses them by too much.
+    fn fold_misses(&self, sides: [Half; 2], worth: &Worth<'_>) -> bool {
+        let normal: DVec3 = sides.iter().map(|side| self.normals[side.face as usize]).sum();
+        let misses = || {
+            let places: Vec<DVec3> = sides.iter().flat_map(|side| self.lattice(side.face)).collect();
+            (worth.misfit)(&places, normal.normalize_or_zero()) > LEAST_MISS * worth.max_error
+        };
+        self.folds(sides) && (normal == DVec3::ZERO || misses())
     }
 
     /// Places within a disc on the faces that the surface joins to some, and the mean of those

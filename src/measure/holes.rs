@@ -93,7 +93,7 @@ pub struct Depths {
 }
 
 impl Depths {
-    /// From what all rays of a picture meet.
+    /// From what the rays of all pixels of a picture of this width and height meet.
     #[must_use]
     pub fn new(size: [u32; 2], met: Met) -> Self {
         Self { size, depths: met.surely, perhaps: met.perhaps }

@@ -97,10 +97,9 @@ pub fn polygon_bound<const N: usize>(corners: [DVec3; N], eye: &Eye) -> Option<B
 #[must_use]
 pub fn triangle(corners: [DVec3; 3], eye: &Eye) -> Option<[DVec2; 4]> {
     let (mut shown, mut count) = ([DVec2::ZERO; 4], 0);
-    let flip = DVec2::new(1.0, -1.0) * eye.samples_per_unit();
     let mut take = |point: DVec3| {
         // What the near plane cuts off of three corners leaves four at most.
-        shown[count..].fill(eye.middle() + flip * place(point, eye));
+        shown[count..].fill(in_samples(place(point, eye), eye));
         count += 1;
     };
     for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
@@ -145,11 +144,15 @@ fn join(a: [DVec2; 2], b: [DVec2; 2]) -> [DVec2; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// From the picture's plane, up, to samples, down.
+/// The bound in samples of an extent in the picture's plane.
 fn to_samples(plane: [DVec2; 2], eye: &Eye) -> Bound {
-    let flip = DVec2::new(1.0, -1.0) * eye.samples_per_unit();
-    let (a, b) = (eye.middle() + plane[0] * flip, eye.middle() + plane[1] * flip);
+    let [a, b] = plane.map(|place| in_samples(place, eye));
     Bound { min: a.min(b) - BOUND_PAD, max: a.max(b) + BOUND_PAD }
+}
+
+/// From the picture's plane, up, to samples, down.
+fn in_samples(place: DVec2, eye: &Eye) -> DVec2 {
+    eye.middle() + place * DVec2::new(1.0, -1.0) * eye.samples_per_unit()
 }
 
 /// Length of `(x, y)`, whose squares neither overflow nor vanish in model units.
@@ -180,10 +183,6 @@ mod tests {
             near: Some(near),
         };
         Eye::new(&camera, &Frame::default(), [640, 480]).unwrap()
-    }
-
-    fn in_samples(point: DVec3, eye: &Eye) -> DVec2 {
-        eye.middle() + place(point, eye) * DVec2::new(1.0, -1.0) * eye.samples_per_unit()
     }
 
     /// Points of the quadric over rings of the domain.
@@ -224,7 +223,7 @@ mod tests {
             let bound = bound(&prism, &eye);
             let points = points(center, axes, radii, curvature);
             let shown: Vec<DVec2> =
-                points.iter().filter(|p| p.z >= eye.near).map(|p| in_samples(*p, &eye)).collect();
+                points.iter().filter(|p| p.z >= eye.near).map(|p| in_samples(place(*p, &eye), &eye)).collect();
             for place in &shown {
                 let bound = bound.unwrap();
                 let inside = place.cmpge(bound.min - 1e-6).all() && place.cmple(bound.max + 1e-6).all();
@@ -236,6 +235,24 @@ mod tests {
                 let (min, max) = shown.iter().fold((shown[0], shown[0]), |(a, b), p| (a.min(*p), b.max(*p)));
                 let slack = 0.03 * (bound.max - bound.min) + 2.0 * BOUND_PAD;
                 prop_assert!((min - bound.min).cmple(slack).all() && (bound.max - max).cmple(slack).all());
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_picture_of_a_triangle_fills_its_bound(
+            perspective: bool, corners in proptest::array::uniform9(-1.0..1.0),
+        ) {
+            let corners: [DVec3; 3] = std::array::from_fn(|n| DVec3::from_slice(&corners[3 * n..]));
+            let eye = eye(perspective, 0.05);
+            let (shown, bound) = (triangle(corners, &eye), polygon_bound(corners, &eye));
+            prop_assert_eq!(shown.is_some(), corners.iter().any(|corner| corner.z >= eye.near));
+            prop_assert_eq!(shown.is_some(), bound.is_some());
+            if let (Some(shown), Some(bound)) = (shown, bound) {
+                let least = shown.into_iter().reduce(DVec2::min).unwrap() - BOUND_PAD;
+                let most = shown.into_iter().reduce(DVec2::max).unwrap() + BOUND_PAD;
+                prop_assert_eq!((least, most), (bound.min, bound.max));
             }
         }
     }

@@ -72,7 +72,7 @@ mod tests {
 
     /// The pixels that a polygon adds beside some that rays meet, in rows of `o` and `#`.
     fn rows(met: &[[u32; 2]], polygon: [[f64; 2]; 4]) -> Vec<String> {
-        let mut hit = vec![false; 48];
+        let mut hit = vec![false; (SIZE[0] * SIZE[1]) as usize];
         met.iter().for_each(|&[x, y]| hit[(y * SIZE[0] + x) as usize] = true);
         let mut slivers = Slivers::beside(hit.clone(), SIZE);
         slivers.add(&polygon.map(DVec2::from));
