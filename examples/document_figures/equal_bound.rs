@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 use glam::{DVec2, DVec3};
 use qsplat::analyse::canonical::mix;
 use qsplat::bake::{Clips, DEFAULT_EFFORT, MaxError, Options, Shapes, Silent};
-use qsplat::fit::pose::Pose;
+use qsplat::fit::pose::{Axes, Pose};
 use qsplat::format::quantize::Quantizer;
 use qsplat::format::{Limits, decode, encode};
 use qsplat::measure::holes::{self, Depths, Mark};
@@ -245,6 +245,7 @@ fn rows(model: &Model, bound: f64) -> Result<Vec<Vec<String>>> {
         surface: &sheets.surface,
         budget: Budget::new(max_error, Clips::Curved),
         shapes: Shapes::All,
+        axes: Axes::Principal,
         open: &[],
         overhang: 0.0,
         round: &|splat| quantizer.snap(splat).ok(),

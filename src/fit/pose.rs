@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use glam::{DMat3, DVec2, DVec3, Vec2Swizzles};
 
-use super::quadric::{Height, Moments, RIDGE};
+use super::quadric::{Height, Moments, NONE_LEFT, RIDGE};
 
 /// Where a splat stands: a point and an orthonormal frame `(i, j, k)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -88,6 +88,16 @@ const ROUNDS: usize = 3;
 /// Rounds that do for a frame that stands well.
 const FEW_ROUNDS: usize = 2;
 
+/// Which way the axes of a quadric lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axes {
+    /// The principal ways of the best quadric.
+    #[default]
+    Principal,
+    /// As at the start: of the quadrics with these axes it is the best.
+    Held,
+}
+
 /// How a quadric is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitting {
@@ -100,6 +110,8 @@ pub struct Fitting {
     pub least: f64,
     /// The weight, a point, of keeping the second-order terms small: see [`RIDGE`].
     pub ridge: f64,
+    /// Whether its axes are the principal ones.
+    pub axes: Axes,
     /// Rounds of fitting and turning, at least one.
     pub rounds: usize,
 }
@@ -108,7 +120,7 @@ impl Fitting {
     /// A fit of anything to points within `radius`, its axes always the principal ones.
     #[must_use]
     pub fn within(radius: f64) -> Self {
-        Self { shapes: Shapes::All, radius, least: 0.0, ridge: RIDGE, rounds: ROUNDS }
+        Self { shapes: Shapes::All, radius, least: 0.0, ridge: RIDGE, axes: Axes::Principal, rounds: ROUNDS }
     }
 
     /// The same fit from a start that stands well: near the surface, its `k` within a few degrees of the
@@ -129,7 +141,8 @@ pub fn principal(
     fitting: &Fitting,
     points: impl Iterator<Item = (DVec3, f64)> + Clone,
 ) -> Principal {
-    let &Fitting { shapes, radius, least, ridge, rounds } = fitting;
+    let &Fitting { shapes, radius, least, ridge, axes, rounds } = fitting;
+    let mixed = if axes == Axes::Held { NONE_LEFT } else { ridge };
     let mut pose = *start;
     let mut height = Height::default();
     for round in 0..rounds {
@@ -138,7 +151,7 @@ pub fn principal(
             let local = pose.to_local(point);
             moments.add(local.x, local.y, local.z, weight);
         }
-        height = moments.solve(ridge);
+        height = moments.solve(ridge, mixed);
         if shapes == Shapes::Flat {
             let Height { h, c, d, .. } = moments.solve_plane();
             height = Height { h, c, d, ..height };
@@ -255,5 +268,21 @@ mod tests {
         // The mean of x² over the disc is a quarter of its square radius.
         let height = plant.to_local(found.pose.center).z;
         assert!((height - 2.0 * 0.25 * 0.01).abs() < 2e-4, "{height}");
+    }
+
+    #[test]
+    fn axes_that_are_held_stay_whatever_the_surface_does() {
+        let start = Pose::at(DVec3::ZERO, DVec3::Z);
+        let places = (0..400_u32).map(|n| [n % 20, n / 20].map(|at| 0.1 * (f64::from(at) - 9.5)));
+        let twisted =
+            places.map(|[u, v]| start.axes * DVec3::new(u, v, 0.3 * u * u + 0.1 * u * v - 0.2 * v * v));
+        let weighted = twisted.map(|point| (point, 1.0));
+        let found =
+            |axes: Axes| principal(&start, &Fitting { axes, ..Fitting::within(1.0) }, weighted.clone());
+        let held = found(Axes::Held);
+        assert!(held.pose.axes.x_axis.distance(start.axes.x_axis) < 1e-6, "{held:?}");
+        assert!(held.curvature.distance(DVec2::new(0.3, -0.2)) < 1e-6, "{held:?}");
+        let turn = found(Axes::Principal).pose.axes.x_axis.angle_between(start.axes.x_axis);
+        assert!((turn - 0.5 * libm::atan2(0.1, 0.5)).abs() < 1e-6, "{turn}");
     }
 }

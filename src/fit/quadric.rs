@@ -24,6 +24,9 @@ pub const RIDGE: f64 = 1e-7;
 /// curvature along it shrinks by a hundredth.
 pub const STIFF_RIDGE: f64 = 1e-3;
 
+/// The same for a term that must go: what is left of it is lost in rounding.
+pub const NONE_LEFT: f64 = 1e9;
+
 /// Height over a plane as a full quadratic polynomial, in the units of its moments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Height {
@@ -88,15 +91,16 @@ impl Moments {
 
     /// The least-squares polynomial; of all that fit equally well, the least.
     ///
-    /// `ridge` is the weight, a point, of keeping the second-order terms small, as [`RIDGE`].
+    /// `ridge` is the weight, a point, of keeping the second-order terms small, as [`RIDGE`], and `mixed` that of
+    /// keeping the one of `u` and `v` small.
     #[must_use]
-    pub fn solve(&self, ridge: f64) -> Height {
+    pub fn solve(&self, ridge: f64, mixed: f64) -> Height {
         let count = self.normal[(0, 0)];
         if count == 0.0 {
             return Height::default();
         }
         let mut normal = self.normal;
-        for second_order in 3..6 {
+        for (second_order, ridge) in [(3, ridge), (4, mixed), (5, ridge)] {
             normal[(second_order, second_order)] += ridge * count;
         }
         let (x, rank) = match cholesky(&normal, &self.right) {
@@ -180,7 +184,7 @@ mod tests {
                 + height.b * v * v;
             moments.add(u, v, w, 1.0);
         }
-        moments.solve(RIDGE)
+        moments.solve(RIDGE, RIDGE)
     }
 
     fn disc(radius: f64) -> Vec<(f64, f64)> {
@@ -238,7 +242,7 @@ mod tests {
                 moments.add(u, 0.1 * side, 0.3 * u * u + 0.01 * side * side, 1.0);
             }
         }
-        let (soft, stiff) = (moments.solve(RIDGE), moments.solve(STIFF_RIDGE));
+        let (soft, stiff) = (moments.solve(RIDGE, RIDGE), moments.solve(STIFF_RIDGE, STIFF_RIDGE));
         assert!((soft.b - 1.0).abs() < 0.01 && (soft.a - 0.3).abs() < 1e-3, "{soft:?}");
         assert!(stiff.b.abs() < 0.1 && (stiff.a - 0.3).abs() < 0.01, "{stiff:?}");
     }

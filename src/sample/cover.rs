@@ -15,6 +15,7 @@ use super::moves::improve;
 use super::polygon;
 use super::region::Region;
 use super::settle::Candidate;
+use super::tighten::tighten;
 use crate::model::sight::Sight;
 use crate::model::splat::{Kind, Splat};
 use rayon::prelude::*;
@@ -88,6 +89,7 @@ pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, eff
     choice.merged = improve(grower, regions, &mut cover, effort);
     cover.rechoose();
     exchange(grower, regions, &mut cover, effort);
+    tighten(grower, regions, &mut cover);
     choice.low_rank = cover.chosen.iter().filter(|&&index| cover.candidates[index].rank < 6).count();
     (cover, choice)
 }

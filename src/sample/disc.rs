@@ -98,7 +98,7 @@ mod tests {
     use crate::analyse::cloud_surface::{Lines as Given, cloud_surface};
     use crate::analyse::planted::random;
     use crate::fit::clip::Clips;
-    use crate::fit::pose::Shapes;
+    use crate::fit::pose::{Axes, Shapes};
     use crate::model::cloud::Cloud;
     use glam::{DVec3, Vec3};
 
@@ -113,6 +113,7 @@ mod tests {
             surface: &surface,
             budget: Budget::new(BOUND, Clips::Curved),
             shapes: Shapes::All,
+            axes: Axes::Principal,
             open: &[],
             overhang: 0.0,
             round: &|splat| Some(splat.clone()),

@@ -1,22 +1,30 @@
 //! A splat laid out for a given set of pieces.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use super::grow::{Domain, Grower};
 use super::region::Region;
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
-use crate::fit::pose::Pose;
+use crate::fit::pose::{Axes, Pose};
 
 /// An ellipse around places goes on by this factor beyond the farthest, so that the turn and the
 /// rounding of the splat leave them inside.
 const OUTSET: f64 = 1.02;
+
+/// The same where the least splat is looked for: of a slender one, a turn by a little moves the ends by much.
+const WIDER: [f64; 3] = [OUTSET, 1.1, 1.3];
 
 /// No ellipse around places is more slender than this: those on a line have no width.
 const SLENDEREST: f64 = 0.05;
 
 /// Times an ellipse is laid out anew in the frame of the quadric found over the last one.
 const ROUNDS: usize = 2;
+
+/// Ways in which a box around places is laid: a strip is widened by at most a thirtieth of its length.
+const TURNS: u32 = 48;
 
 /// Pieces that one splat is to cover.
 pub(super) struct Need {
@@ -46,34 +54,102 @@ impl Need {
         (!pieces.is_empty()).then_some(Self { pieces, places, margin, pose, reach })
     }
 
-    /// A splat that covers all of it, grown as far as that goes on.
-    pub(super) fn covered(&self, grower: &Grower, region: &mut Region) -> Option<Candidate> {
-        let piece = self.central(grower.surface);
-        let seeds = grower.surface.pieces[piece as usize];
-        let least = self.domain(grower, &seeds, region)?;
-        let settled = |domain: Domain, region: &mut Region| {
-            settle(grower, domain, &seeds, piece, region)
-                .filter(|found| found.covers(self.pieces.iter().copied()))
+    /// A splat that covers all of it, grown as far as that goes on, along the first of some axes that do.
+    pub(super) fn covered(&self, along: &[Axes], grower: &Grower, region: &mut Region) -> Option<Candidate> {
+        along.iter().find_map(|&axes| self.laid_out(axes, grower).grown(region))
+    }
+
+    /// A splat that covers all of it and goes on as little beyond as can be.
+    pub(super) fn enclosed(&self, axes: Axes, grower: &Grower, region: &mut Region) -> Option<Candidate> {
+        self.laid_out(axes, grower).least(region)
+    }
+
+    /// Splats laid out for it along the principal axes of what lies there, or along the box around it, in which
+    /// a strip is narrow whichever way it bends.
+    fn laid_out<'a>(&'a self, axes: Axes, grower: &Grower<'a>) -> Layout<'a> {
+        let pose = match axes {
+            Axes::Principal => self.pose,
+            Axes::Held => self.boxed(),
         };
-        let found = settled(least.clone(), region)?;
+        Layout { need: self, grower: Grower { axes, ..*grower }, pose, piece: self.central(grower.surface) }
+    }
+
+    /// The frame, turned about its normal so that the box around all places is least.
+    fn boxed(&self) -> Pose {
+        let turned = (0..TURNS).map(|n| self.pose.turned(f64::from(n) / f64::from(TURNS) * FRAC_PI_2));
+        let area =
+            |pose: &Pose| (self.corner(pose, DVec2::max) - self.corner(pose, DVec2::min)).element_product();
+        let areas = turned.map(|pose| (area(&pose), pose));
+        areas.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(self.pose, |(_, pose)| pose)
+    }
+
+    /// Its places in the plane of a frame.
+    fn flat(&self, pose: &Pose) -> impl Iterator<Item = DVec2> {
+        self.places.iter().map(|&place| pose.to_local(place).truncate())
+    }
+
+    /// The lowest or the highest corner of the box around its places.
+    fn corner(&self, pose: &Pose, farther: fn(DVec2, DVec2) -> DVec2) -> DVec2 {
+        self.flat(pose).reduce(farther).unwrap_or_default()
+    }
+
+    /// The piece nearest to the middle.
+    fn central(&self, surface: &Surface) -> u32 {
+        let far = |piece: u32| surface.middle(piece).distance_squared(self.pose.center);
+        self.pieces.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b))).unwrap_or(0)
+    }
+}
+
+/// A need, and a frame to begin from.
+struct Layout<'a> {
+    need: &'a Need,
+    grower: Grower<'a>,
+    pose: Pose,
+    /// The piece that a splat grows from.
+    piece: u32,
+}
+
+impl Layout<'_> {
+    fn seeds(&self) -> [u32; 3] {
+        self.grower.surface.pieces[self.piece as usize]
+    }
+
+    /// A splat grown as far as that goes on.
+    fn grown(&self, region: &mut Region) -> Option<Candidate> {
+        let least = self.domain(OUTSET, region)?;
+        let found = self.settled(least.clone(), region)?;
         // More than is needed leaves less for others to cover alone.
-        let larger = grower.enlarged(least, &seeds, region);
-        let grown = settled(larger, region);
+        let larger = self.grower.enlarged(least, &self.seeds(), region);
+        let grown = self.settled(larger, region);
         Some(grown.filter(|grown| grown.pieces.len() > found.pieces.len()).unwrap_or(found))
     }
 
-    /// A domain that encloses all places.
-    fn domain(&self, grower: &Grower, seeds: &[u32], region: &mut Region) -> Option<Domain> {
+    /// The least splat.
+    fn least(&self, region: &mut Region) -> Option<Candidate> {
+        WIDER.into_iter().find_map(|outset| {
+            let domain = self.domain(outset, region)?;
+            self.settled(domain, region)
+        })
+    }
+
+    /// The splat of a domain, if it covers all of the need.
+    fn settled(&self, domain: Domain, region: &mut Region) -> Option<Candidate> {
+        settle(&self.grower, domain, &self.seeds(), self.piece, region)
+            .filter(|found| found.covers(self.need.pieces.iter().copied()))
+    }
+
+    /// A domain that encloses all places and goes on beyond them by a factor.
+    fn domain(&self, outset: f64, region: &mut Region) -> Option<Domain> {
         let mut pose = self.pose;
         for _ in 0..ROUNDS {
-            let (around, radii) = self.ellipse(&pose);
-            let domain = grower.attempt(&around, radii, seeds, region).ok()?;
+            let (around, radii) = self.ellipse(&pose, outset);
+            let domain = self.grower.attempt(&around, radii, &self.seeds(), region).ok()?;
             let trusted = |place: &DVec3| {
                 let local = domain.pose.to_local(*place);
                 (local.truncate() / domain.radii).length_squared() <= 1.0
-                    && grower.near(domain.curvature, local, 1.0)
+                    && self.grower.near(domain.curvature, local, 1.0)
             };
-            if self.places.iter().all(trusted) {
+            if self.need.places.iter().all(trusted) {
                 return Some(domain);
             }
             pose = domain.pose;
@@ -82,20 +158,13 @@ impl Need {
     }
 
     /// An ellipse along a frame's axes around all places, and the frame moved to its centre.
-    fn ellipse(&self, pose: &Pose) -> (Pose, DVec2) {
-        let flat = || self.places.iter().map(|&place| pose.to_local(place).truncate());
-        let low = flat().fold(DVec2::INFINITY, DVec2::min);
-        let high = flat().fold(DVec2::NEG_INFINITY, DVec2::max);
+    fn ellipse(&self, pose: &Pose, outset: f64) -> (Pose, DVec2) {
+        let need = self.need;
+        let [low, high] = [DVec2::min, DVec2::max].map(|farther| need.corner(pose, farther));
         let (center, half) = (0.5 * (low + high), (0.5 * (high - low)).max(DVec2::splat(f64::MIN_POSITIVE)));
         let half = half.max(DVec2::splat(SLENDEREST * half.max_element()));
-        let scale = flat().map(|uv| ((uv - center) / half).length()).fold(0.0, f64::max);
+        let scale = need.flat(pose).map(|uv| ((uv - center) / half).length()).fold(0.0, f64::max);
         let moved = Pose { center: pose.center + pose.axes * center.extend(0.0), ..*pose };
-        (moved, OUTSET * scale * half + self.margin)
-    }
-
-    /// The piece nearest to the middle.
-    fn central(&self, surface: &Surface) -> u32 {
-        let far = |piece: u32| surface.middle(piece).distance_squared(self.pose.center);
-        self.pieces.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b))).unwrap_or(0)
+        (moved, outset * scale * half + need.margin)
     }
 }

@@ -17,7 +17,7 @@ use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care, ClipTolerance, Clips};
 use crate::fit::ellipse::{circumellipse, crossings, holds};
 use crate::fit::limits::{self, Limited};
-use crate::fit::pose::{Fitting, Pose, Principal, Shapes, above, miss, principal};
+use crate::fit::pose::{Axes, Fitting, Pose, Principal, Shapes, above, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -105,6 +105,8 @@ pub struct Grower<'a> {
     pub budget: Budget,
     /// What splats may be pieces of.
     pub shapes: Shapes,
+    /// Which way their axes lie.
+    pub axes: Axes,
     /// Where nothing lies across a border ([`super::outline::open_sides`]), for splats that
     /// partners cut; else empty.
     pub open: &'a [bool],
@@ -308,7 +310,8 @@ impl Grower<'_> {
         // Points of a strip say little of the curvature across it, and what they say may be
         // nothing but their distance from the strip's own surface.
         let (fitting, fit) = [RIDGE, STIFF_RIDGE].into_iter().find_map(|ridge| {
-            let fitting = Fitting { shapes: self.shapes, least, ridge, ..Fitting::within(largest) };
+            let fitting =
+                Fitting { shapes: self.shapes, axes: self.axes, least, ridge, ..Fitting::within(largest) };
             let weighted = places.iter().map(|place| (place.point, place.weight));
             let fit = principal(pose, &fitting, weighted);
             (!too_steep(&fit)).then_some((fitting, fit))

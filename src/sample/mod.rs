@@ -1,6 +1,6 @@
 //! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
 //! became redundant, move and merge what is left, choose anew from all that were grown, lay out others
-//! for shares that neighbours exchange, mend what shows from the side.
+//! for shares that neighbours exchange, shrink each to its own share, mend what shows from the side.
 
 pub mod backing;
 pub mod budget;
@@ -26,4 +26,5 @@ mod seal;
 mod set_cover;
 pub mod settle;
 pub mod thrift;
+mod tighten;
 mod withdraw;

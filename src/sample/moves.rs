@@ -14,6 +14,7 @@ use super::grow::Grower;
 use super::owners::Owners;
 use super::region::Region;
 use super::settle::Candidate;
+use crate::fit::pose::Axes;
 
 /// Splats looked at side by side before their moves are made. Batches are of the same size
 /// whatever the threads, so that the result is the same too.
@@ -135,7 +136,7 @@ impl Search<'_> {
 
     /// A splat for a need in the place of those it comes from, whatever it costs.
     fn move_to(&self, need: &Need, old: Vec<usize>, region: &mut Region) -> Option<Move> {
-        let new = need.covered(self.grower, region)?;
+        let new = need.covered(&[Axes::Principal], self.grower, region)?;
         Some(Move { old, new })
     }
 }

@@ -1,7 +1,10 @@
 //! Which of the chosen splats cover each piece, and so which are neighbours.
 
+use glam::DVec3;
+use rayon::prelude::*;
+
 use super::cover::Cover;
-use crate::analyse::surface::Rows;
+use crate::analyse::surface::{Rows, Surface};
 
 /// For each piece, the chosen splats that cover it, in the order in which they were.
 pub(super) struct Owners(Rows);
@@ -23,6 +26,29 @@ impl Owners {
                 _ => None,
             })
         })
+    }
+
+    /// For each candidate of the cover its share of the surface, ascending: the pieces whose middles lie deeper in
+    /// it than in others, and what it covers of those that are `common`; none if it is not chosen.
+    pub(super) fn shares(&self, cover: &Cover, surface: &Surface, common: &[bool]) -> Rows {
+        let depth = |owner: u32, middle: DVec3| {
+            let splat = &cover.candidates[owner as usize].splat;
+            -splat.ellipse(splat.to_local(middle).truncate())
+        };
+        let deepest = |piece: u32| {
+            let middle = surface.middle(piece);
+            let depths = self.0.row(piece).iter().map(|&owner| (depth(owner, middle), owner));
+            depths.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, owner)| owner)
+        };
+        let pieces = 0..cover.times.len() as u32;
+        let deepest: Vec<Option<u32>> = pieces.clone().into_par_iter().map(deepest).collect();
+        let owned = |piece: u32| {
+            let owners = self.0.row(piece).iter().copied();
+            let deepest = deepest[piece as usize];
+            let has = move |owner: &u32| common[piece as usize] || deepest == Some(*owner);
+            owners.filter(has).map(move |owner| (owner, piece))
+        };
+        Rows::placed(cover.candidates.len(), || pieces.clone().flat_map(&owned))
     }
 
     /// The pieces of one splat that no third covers beside it and another, ascending.
@@ -57,7 +83,7 @@ impl Owners {
 mod tests {
     use super::*;
     use crate::sample::cover::tests::candidate;
-    use glam::DVec3;
+    use glam::Vec3;
 
     #[test]
     fn what_splats_cover_alone_and_with_one_other() {
@@ -75,5 +101,26 @@ mod tests {
         assert_eq!(owners.shared(&cover, [0, 2]).collect::<Vec<u32>>(), [2]);
         assert_eq!(owners.shared(&cover, [0, 3]).count(), 0, "a third covers that too");
         assert_eq!(owners.neighbours(&cover, 0), [3, 2], "the nearest first");
+    }
+
+    #[test]
+    fn a_piece_goes_to_the_splat_that_it_lies_deepest_in_unless_it_is_common() {
+        let at = |x: f32| Vec3::new(x, 0.0, 0.0);
+        let surface = Surface {
+            points: [0.0, 0.4, 0.6, 1.0].map(at).to_vec(),
+            pieces: (0..4).map(|n| [n; 3]).collect(),
+            ..Surface::default()
+        };
+        let lists: [&[u32]; 3] = [&[0, 1, 2], &[1], &[1, 2, 3]];
+        let mut cover = Cover { candidates: lists.map(candidate).to_vec(), ..Cover::default() };
+        cover.times = vec![0; 4];
+        cover.candidates[2].splat.center = DVec3::X;
+        [0, 2].into_iter().for_each(|index| cover.add(index));
+        let shares = |common: &[bool]| {
+            let shares = Owners::of(&cover).shares(&cover, &surface, common);
+            [0, 1, 2].map(|of| shares.row(of).to_vec())
+        };
+        assert_eq!(shares(&[false; 4]), [vec![0, 1], vec![], vec![2, 3]]);
+        assert_eq!(shares(&[false, true, false, false]), [vec![0, 1], vec![], vec![1, 2, 3]]);
     }
 }

@@ -258,7 +258,7 @@ mod tests {
     use crate::analyse::cloud_normals::NormalSource;
     use crate::analyse::cloud_surface::{Lines, cloud_surface};
     use crate::analyse::planted::{normal, random};
-    use crate::fit::pose::Shapes;
+    use crate::fit::pose::{Axes, Shapes};
     use crate::model::cloud::Cloud;
     use crate::sample::budget::Budget;
     use glam::{DMat3, Vec2Swizzles, Vec3};
@@ -293,6 +293,7 @@ mod tests {
             surface: &surface,
             budget: Budget::new(bound, Clips::Curved),
             shapes: Shapes::All,
+            axes: Axes::Principal,
             open: &[],
             overhang: 0.0,
             round: &coarse,
