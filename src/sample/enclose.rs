@@ -23,7 +23,7 @@ const SLENDEREST: f64 = 0.05;
 /// Times an ellipse is laid out anew in the frame of the quadric found over the last one.
 const ROUNDS: usize = 2;
 
-/// Ways in which a box around places is laid: a strip is widened by at most a thirtieth of its length.
+/// Ways in which a box around places is laid: that of a strip is wider than need be by at most a sixtieth of its length.
 const TURNS: u32 = 48;
 
 /// Pieces that one splat is to cover.

@@ -57,12 +57,12 @@ fn tighter(candidate: &Candidate, share: &[u32], grower: &Grower, region: &mut R
     if candidate.last_resort {
         return None;
     }
-    let (area, most) = (area(candidate), cost(&candidate.splat));
+    let smaller =
+        |found: &Candidate| area(found) < area(candidate) && cost(&found.splat) <= cost(&candidate.splat);
     let need = Need::new(grower.surface, share.to_vec(), candidate.splat.axes)?;
     let found =
         [Axes::Principal, Axes::Held].into_iter().filter_map(|axes| need.enclosed(axes, grower, region));
-    let smaller = found.filter(|found| self::area(found) < area && cost(&found.splat) <= most);
-    smaller.min_by(|a, b| self::area(a).total_cmp(&self::area(b)))
+    found.filter(smaller).min_by(|a, b| area(a).total_cmp(&area(b)))
 }
 
 /// That of its ellipse, over π.
