@@ -153,6 +153,13 @@ impl Cut<'_> {
             && (look == Look::Coarse || self.reaches_corners(outlines, reach, &border))
     }
 
+    /// Places along the border that they give the splat, in splat coordinates, as close as on a close look.
+    pub(super) fn border(&self, tolerance: &ClipTolerance) -> Vec<DVec3> {
+        let conics: Vec<Conic> = self.clips.iter().map(|clip| clip.conic(self.radii)).collect();
+        let lifted = |uv: DVec2| uv.extend((self.curvature * uv * uv).element_sum());
+        clip::border(&conics, self.radii, tolerance, FINER).map(lifted).collect()
+    }
+
     /// Whether every corner of outlines that lies well inside the ellipse has a place of a border within
     /// `reach`: where the quadric slopes, one that is near enough in the plane may not be.
     fn reaches_corners(&self, outlines: &[Outline], reach: f64, border: &[DVec3]) -> bool {

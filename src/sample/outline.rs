@@ -24,6 +24,9 @@ pub struct Outline {
     pub ends: bool,
 }
 
+/// Places told of on each side of an outline.
+const PLACES: u32 = 4;
+
 /// A side of a border: the points it leads from and to.
 pub type Side = (u32, u32);
 
@@ -43,6 +46,17 @@ impl Outline {
         let found = (0..sides).map(|n| around(n) % sides).find(is_near);
         last.set(found.unwrap_or(last.get()));
         found.is_some()
+    }
+
+    /// Places along it, a few on each side, in splat coordinates.
+    pub fn places(&self) -> impl Iterator<Item = DVec3> {
+        let count = self.points.len();
+        let vertex = move |n: usize| self.points[n % count].extend(self.heights[n % count]);
+        let sides = count - usize::from(!self.closed);
+        let on_side = move |n: usize| {
+            (0..PLACES).map(move |k| vertex(n).lerp(vertex(n + 1), (f64::from(k) + 0.5) / f64::from(PLACES)))
+        };
+        (0..sides).flat_map(on_side)
     }
 
     /// Where it turns sharply to either side, in splat coordinates.

@@ -1,6 +1,6 @@
 //! Other clip curves for the chosen splats, where whoever stores them knows some that cost less.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::backing::{Backing, Look};
 use super::candidates::Regions;
@@ -10,6 +10,8 @@ use super::outline::Outline;
 use super::region::Region;
 use super::settle::{Candidate, ROUNDED_SLACK};
 use crate::error::Result;
+use crate::fit::clip::ClipTolerance;
+use crate::fit::ellipse::holds;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -52,6 +54,8 @@ struct Uncut<'a> {
     /// What it is to be cut along.
     outlines: Vec<Outline>,
     backing: Backing<'a>,
+    /// Places of the outlines that its border follows now. Elsewhere the rim may bound it instead, just beyond a line.
+    followed: Vec<DVec3>,
     /// Places that it covers.
     covered: Vec<DVec2>,
     /// Places that it strays from, and that are cut away.
@@ -65,7 +69,9 @@ impl Trial for Cuts<'_> {
     }
 
     fn will_do(&mut self, clips: &[ClipCurve]) -> bool {
-        let Some(Uncut { splat, outlines, backing, covered, strayed }) = &self.at else { return false };
+        let Some(Uncut { splat, outlines, backing, followed, covered, strayed }) = &self.at else {
+            return false;
+        };
         let tolerance = &self.grower.budget.stored;
         let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(splat.radii)).collect();
         let cuts = |uv: &DVec2| conics.iter().any(|conic| conic.cuts(*uv));
@@ -73,6 +79,7 @@ impl Trial for Cuts<'_> {
         !covered.iter().any(cuts)
             && strayed.iter().all(cuts)
             && cut.follows(outlines, tolerance, Look::Fine)
+            && follows_all(&cut, followed, tolerance)
             && backing.holds(clips)
     }
 }
@@ -84,7 +91,30 @@ fn uncut<'a>(candidate: &'a Candidate, grower: &'a Grower, region: &mut Region) 
     let pose = Pose { center: splat.center, axes: splat.axes };
     let backing = Backing::of(grower, &pose, splat.radii, splat.curvature, region, Look::Fine);
     let (covered, strayed) = (covered(candidate, grower), strayed(splat, grower, region));
-    Some(Uncut { splat, outlines, backing, covered, strayed })
+    let followed = followed(splat, &outlines, &grower.budget.stored);
+    Some(Uncut { splat, outlines, backing, followed, covered, strayed })
+}
+
+/// The places of outlines, farther inside a splat's ellipse than curves lie outside lines, that its border passes
+/// within the tolerance for edges. Nearer to the rim a line is left for the next splat along it.
+fn followed(splat: &Splat, outlines: &[Outline], tolerance: &ClipTolerance) -> Vec<DVec3> {
+    let border =
+        Cut { clips: &splat.clips, radii: splat.radii, curvature: splat.curvature }.border(tolerance);
+    let inner = splat.radii - tolerance.outset;
+    let inside = |place: &DVec3| inner.min_element() > 0.0 && holds(place.truncate(), inner);
+    let places = outlines.iter().flat_map(Outline::places).filter(inside);
+    places.filter(|&place| passes(&border, place, tolerance)).collect()
+}
+
+/// Whether a border passes them all.
+fn follows_all(cut: &Cut<'_>, places: &[DVec3], tolerance: &ClipTolerance) -> bool {
+    let border = cut.border(tolerance);
+    places.iter().all(|&place| passes(&border, place, tolerance))
+}
+
+/// Whether a border passes a place within the tolerance for edges.
+fn passes(border: &[DVec3], place: DVec3, tolerance: &ClipTolerance) -> bool {
+    border.iter().any(|on| on.distance(place) <= tolerance.edge)
 }
 
 /// The corners of what a candidate covers, or the spots.
@@ -114,4 +144,33 @@ fn strayed(splat: &Splat, grower: &Grower, region: &Region) -> Vec<DVec2> {
         .filter(|local| !grower.reaches(splat.curvature, *local, ROUNDED_SLACK))
         .map(|local| local.truncate())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::clip::Clips;
+    use crate::sample::budget::Budget;
+    use crate::sample::cover::tests::candidate;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_curve_that_leaves_the_ellipse_beside_a_line_does_not_follow_it() {
+        let tolerance = Budget::new(0.1, Clips::Curved).stored;
+        let mut splat = candidate(&[]).splat;
+        splat.radii = DVec2::new(2.4, 0.225);
+        let line = [DVec2::new(-3.0, -0.1), DVec2::new(3.0, -0.1)].to_vec();
+        let outline = Outline { points: line, heights: vec![0.0; 2], closed: false, ends: false };
+        // Along the line, and past it beyond the rim, which lies within the bound of it.
+        let along = |angle: f64| ClipCurve::chord(PI + angle, -angle);
+        let bulging = ClipCurve { p2: DVec2::new(0.0, -0.5), rho: 0.5, ..along(0.02) };
+        splat.clips = vec![along(0.05)];
+        let places = followed(&splat, &[outline], &tolerance);
+        let all = |clip: ClipCurve| {
+            let cut = Cut { clips: &[clip], radii: splat.radii, curvature: splat.curvature };
+            follows_all(&cut, &places, &tolerance)
+        };
+        assert!(places.len() > 1, "{places:?}");
+        assert!(all(along(0.06)) && !all(bulging));
+    }
 }
