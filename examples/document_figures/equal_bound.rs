@@ -4,8 +4,8 @@ use std::collections::BinaryHeap;
 
 use glam::{DVec2, DVec3};
 use qsplat::analyse::canonical::mix;
-use qsplat::bake::{Clips, DEFAULT_EFFORT, MaxError, Options, Shapes, Silent};
-use qsplat::fit::pose::{Axes, Pose};
+use qsplat::bake::{Clips, DEFAULT_EFFORT, MaxError, Options, Silent};
+use qsplat::fit::pose::Pose;
 use qsplat::format::quantize::Quantizer;
 use qsplat::format::{Limits, decode, encode};
 use qsplat::measure::holes::{self, Depths, Mark};
@@ -241,15 +241,8 @@ fn rows(model: &Model, bound: f64) -> Result<Vec<Vec<String>>> {
     let max_error = bound * diagonal;
     let sheets = Sheets::new(model, LONGEST * diagonal, max_error, POINTS)?;
     let quantizer = Quantizer::new(max_error);
-    let grower = Grower {
-        surface: &sheets.surface,
-        budget: Budget::new(max_error, Clips::Curved),
-        shapes: Shapes::All,
-        axes: Axes::Principal,
-        open: &[],
-        overhang: 0.0,
-        round: &|splat| quantizer.snap(splat).ok(),
-    };
+    let round = |splat: &Splat| quantizer.snap(splat).ok();
+    let grower = Grower::new(&sheets.surface, Budget::new(max_error, Clips::Curved), &round);
     let regions = Regions::new(sheets.surface.points.len());
     let bench = Bench { model, bound, sheets: &sheets, grower: &grower, regions: &regions, max_error };
     let grown = candidates(&grower, &regions, &Begun::default(), DEFAULT_EFFORT, |_| ());

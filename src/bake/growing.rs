@@ -5,7 +5,7 @@ use crate::analyse::mesh_surface::Marked;
 use crate::analyse::refine::{Fineness, Side};
 use crate::analyse::surface::Surface;
 use crate::fit::clip::Clips;
-use crate::fit::pose::{Axes, Shapes};
+use crate::fit::pose::Shapes;
 use crate::sample::budget::Budget;
 use crate::sample::candidates::Regions;
 use crate::sample::grow::{Grower, Round};
@@ -23,7 +23,7 @@ impl Growing<'_> {
     /// A grower over a surface with such sides.
     pub(super) fn over<'s>(&'s self, surface: &'s Surface, open: &'s [bool]) -> Grower<'s> {
         let &Self { budget, shapes, round } = self;
-        Grower { surface, budget, shapes, axes: Axes::Principal, open, overhang: 0.0, round }
+        Grower { shapes, open, ..Grower::new(surface, budget, round) }
     }
 
     /// The sides across which nothing lies, as [`open_sides`], where splats that partners cut have to know.

@@ -89,13 +89,17 @@ const ROUNDS: usize = 3;
 const FEW_ROUNDS: usize = 2;
 
 /// Which way the axes of a quadric lie.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// The principal ways of the best quadric.
-    #[default]
     Principal,
     /// As at the start: of the quadrics with these axes it is the best.
     Held,
+}
+
+impl Axes {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Principal, Self::Held];
 }
 
 /// How a quadric is fitted.
@@ -110,7 +114,7 @@ pub struct Fitting {
     pub least: f64,
     /// The weight, a point, of keeping the second-order terms small: see [`RIDGE`].
     pub ridge: f64,
-    /// Whether its axes are the principal ones.
+    /// Which way its axes lie.
     pub axes: Axes,
     /// Rounds of fitting and turning, at least one.
     pub rounds: usize,

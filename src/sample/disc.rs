@@ -98,7 +98,6 @@ mod tests {
     use crate::analyse::cloud_surface::{Lines as Given, cloud_surface};
     use crate::analyse::planted::random;
     use crate::fit::clip::Clips;
-    use crate::fit::pose::{Axes, Shapes};
     use crate::model::cloud::Cloud;
     use glam::{DVec3, Vec3};
 
@@ -109,15 +108,7 @@ mod tests {
         let cloud = Cloud { positions, ..Cloud::default() };
         let (source, given) = (NormalSource::Estimate, Given::Given(edges));
         let surface = cloud_surface(&cloud, source, given, None, None, None).unwrap().surface;
-        let grower = Grower {
-            surface: &surface,
-            budget: Budget::new(BOUND, Clips::Curved),
-            shapes: Shapes::All,
-            axes: Axes::Principal,
-            open: &[],
-            overhang: 0.0,
-            round: &|splat| Some(splat.clone()),
-        };
+        let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat| Some(splat.clone()));
         let mut region = Region::new(surface.points.len());
         let mut over = |piece: u32| polygon::over(&grower, piece, &mut region).unwrap().splat;
         (0..surface.pieces.len() as u32).map(|piece| (surface.middle(piece).as_vec3(), over(piece))).collect()

@@ -14,7 +14,8 @@ use crate::fit::pose::{Axes, Pose};
 /// rounding of the splat leave them inside.
 const OUTSET: f64 = 1.02;
 
-/// The same where the least splat is looked for: of a slender one, a turn by a little moves the ends by much.
+/// The same where the least splat is looked for, the first that does: rounding turns a slender one so that its ends
+/// move by more than its width.
 const WIDER: [f64; 3] = [OUTSET, 1.1, 1.3];
 
 /// No ellipse around places is more slender than this: those on a line have no width.
@@ -77,8 +78,10 @@ impl Need {
     /// The frame, turned about its normal so that the box around all places is least.
     fn boxed(&self) -> Pose {
         let turned = (0..TURNS).map(|n| self.pose.turned(f64::from(n) / f64::from(TURNS) * FRAC_PI_2));
-        let area =
-            |pose: &Pose| (self.corner(pose, DVec2::max) - self.corner(pose, DVec2::min)).element_product();
+        let area = |pose: &Pose| {
+            let [low, high] = self.around(pose);
+            (high - low).element_product()
+        };
         let areas = turned.map(|pose| (area(&pose), pose));
         areas.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(self.pose, |(_, pose)| pose)
     }
@@ -88,9 +91,10 @@ impl Need {
         self.places.iter().map(|&place| pose.to_local(place).truncate())
     }
 
-    /// The lowest or the highest corner of the box around its places.
-    fn corner(&self, pose: &Pose, farther: fn(DVec2, DVec2) -> DVec2) -> DVec2 {
-        self.flat(pose).reduce(farther).unwrap_or_default()
+    /// The lowest and the highest corner of the box around its places, along the axes of a frame.
+    fn around(&self, pose: &Pose) -> [DVec2; 2] {
+        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        self.flat(pose).fold(none, |[low, high], uv| [low.min(uv), high.max(uv)])
     }
 
     /// The piece nearest to the middle.
@@ -160,7 +164,7 @@ impl Layout<'_> {
     /// An ellipse along a frame's axes around all places, and the frame moved to its centre.
     fn ellipse(&self, pose: &Pose, outset: f64) -> (Pose, DVec2) {
         let need = self.need;
-        let [low, high] = [DVec2::min, DVec2::max].map(|farther| need.corner(pose, farther));
+        let [low, high] = need.around(pose);
         let (center, half) = (0.5 * (low + high), (0.5 * (high - low)).max(DVec2::splat(f64::MIN_POSITIVE)));
         let half = half.max(DVec2::splat(SLENDEREST * half.max_element()));
         let scale = need.flat(pose).map(|uv| ((uv - center) / half).length()).fold(0.0, f64::max);

@@ -26,10 +26,6 @@ use crate::fit::pose::Axes;
 /// nothing made the cover of stanford-bunny 3 % dearer than these.
 const SHARES: [(f64, f64); 4] = [(1.0, 0.3), (0.7, 0.5), (0.5, 0.8), (0.3, 1.0)];
 
-/// Along which axes they are laid out. Boxes, where nothing else will do, make files of parts 1 to 2 % smaller; where
-/// splats are moved and merged they bring nothing.
-const ALONG: [Axes; 2] = [Axes::Principal, Axes::Held];
-
 /// A round that saves less than this share of the cover's cost is the last: each saves less than the one
 /// before, half as much or so.
 const WORTH: f64 = 0.002;
@@ -127,7 +123,9 @@ impl Layout<'_> {
 
     fn covered(&self, need: Vec<u32>, region: &mut Region) -> Option<Candidate> {
         let axes = self.cover.candidates[self.index].splat.axes;
-        Need::new(self.grower.surface, need, axes)?.covered(&ALONG, self.grower, region)
+        // Boxes, where the principal axes will not do, make files 1 to 2 % smaller; where splats are moved and
+        // merged they bring nothing.
+        Need::new(self.grower.surface, need, axes)?.covered(&Axes::ALL, self.grower, region)
     }
 }
 
@@ -163,7 +161,6 @@ pub(super) mod tests {
     use crate::analyse::surface::Surface;
     use crate::analyse::weld::Welded;
     use crate::fit::clip::Clips;
-    use crate::fit::pose::Shapes;
     use crate::model::splat::Splat;
     use crate::sample::budget::Budget;
     use crate::sample::candidates::candidates;
@@ -193,15 +190,7 @@ pub(super) mod tests {
         let surface = waves();
         let budget = Budget::new(0.004, Clips::Curved);
         let round = |splat: &Splat| Some(splat.clone());
-        let grower = Grower {
-            surface: &surface,
-            budget,
-            shapes: Shapes::All,
-            axes: Axes::Principal,
-            open: &[],
-            overhang: 0.0,
-            round: &round,
-        };
+        let grower = Grower::new(&surface, budget, &round);
         let regions = Regions::new(surface.points.len());
         // The least effort exchanges nothing.
         let grown = candidates(&grower, &regions, &Begun::default(), 1, |_| ());

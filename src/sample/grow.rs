@@ -130,44 +130,73 @@ pub(super) struct Cut<'a> {
 
 impl Cut<'_> {
     /// Whether they cut along outlines and nowhere else, and at every corner of these.
+    pub(super) fn follows(&self, outlines: &[Outline], tolerance: &ClipTolerance, look: Look) -> bool {
+        self.border_along(outlines, tolerance, look).is_some()
+    }
+
+    /// Places along the border that they give the splat, in splat coordinates, if it [follows](Self::follows)
+    /// outlines.
     ///
     /// What is looked at closely keeps the tolerance for edges, in space.
-    pub(super) fn follows(&self, outlines: &[Outline], tolerance: &ClipTolerance, look: Look) -> bool {
+    pub(super) fn border_along(
+        &self,
+        outlines: &[Outline],
+        tolerance: &ClipTolerance,
+        look: Look,
+    ) -> Option<Vec<DVec3>> {
         let (reach, finer) = match look {
             Look::Coarse => (tolerance.reach(), 1.0),
             Look::Fine => (tolerance.edge, FINER),
         };
-        let conics: Vec<Conic> = self.clips.iter().map(|clip| clip.conic(self.radii)).collect();
+        let conics = self.conics();
         let cuts = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
         let followed = |line: &Outline| clip::follows(&line.points, line.closed, self.radii, cuts, tolerance);
         let last = vec![Cell::new(0); outlines.len()];
-        let lifted = |uv: DVec2| uv.extend((self.curvature * uv * uv).element_sum());
         let mut border = Vec::new();
         let along = |uv: DVec2| {
-            let place = lifted(uv);
+            let place = self.lifted(uv);
             border.push(place);
             outlines.iter().zip(&last).any(|(line, last)| line.near(place, reach, last))
         };
-        outlines.iter().all(followed)
+        let follows = outlines.iter().all(followed)
             && clip::border(&conics, self.radii, tolerance, finer).all(along)
-            && (look == Look::Coarse || self.reaches_corners(outlines, reach, &border))
+            && (look == Look::Coarse || self.reaches_corners(outlines, reach, &border));
+        follows.then_some(border)
     }
 
-    /// Places along the border that they give the splat, in splat coordinates, as close as on a close look.
+    /// Places along the border, whatever it follows, as close as on a close look.
     pub(super) fn border(&self, tolerance: &ClipTolerance) -> Vec<DVec3> {
-        let conics: Vec<Conic> = self.clips.iter().map(|clip| clip.conic(self.radii)).collect();
-        let lifted = |uv: DVec2| uv.extend((self.curvature * uv * uv).element_sum());
-        clip::border(&conics, self.radii, tolerance, FINER).map(lifted).collect()
+        clip::border(&self.conics(), self.radii, tolerance, FINER).map(|uv| self.lifted(uv)).collect()
+    }
+
+    fn conics(&self) -> Vec<Conic> {
+        self.clips.iter().map(|clip| clip.conic(self.radii)).collect()
+    }
+
+    /// The place of the quadric over another.
+    fn lifted(&self, uv: DVec2) -> DVec3 {
+        uv.extend((self.curvature * uv * uv).element_sum())
     }
 
     /// Whether every corner of outlines that lies well inside the ellipse has a place of a border within
     /// `reach`: where the quadric slopes, one that is near enough in the plane may not be.
     fn reaches_corners(&self, outlines: &[Outline], reach: f64, border: &[DVec3]) -> bool {
-        let inner = self.radii - reach;
-        let inside = |corner: &DVec3| inner.min_element() > 0.0 && holds(corner.truncate(), inner);
-        let near = |corner: DVec3| border.iter().any(|place| place.distance(corner) <= reach);
-        outlines.iter().flat_map(Outline::corners).filter(inside).all(near)
+        let corners = outlines.iter().flat_map(Outline::corners);
+        corners
+            .filter(|&corner| well_inside(corner, self.radii, reach))
+            .all(|corner| passes(border, corner, reach))
     }
+}
+
+/// Whether a place lies in an ellipse, by a margin off each of its radii.
+pub(super) fn well_inside(place: DVec3, radii: DVec2, margin: f64) -> bool {
+    let inner = radii - margin;
+    inner.min_element() > 0.0 && holds(place.truncate(), inner)
+}
+
+/// Whether a border, by places along it, passes another within `reach`.
+pub(super) fn passes(border: &[DVec3], place: DVec3, reach: f64) -> bool {
+    border.iter().any(|on| on.distance(place) <= reach)
 }
 
 /// A pose and radii with the quadric found for them.
@@ -182,6 +211,14 @@ pub(super) struct Domain {
     pub(super) members: usize,
     /// How far from the centre they lie along each axis.
     pub(super) extent: DVec2,
+}
+
+impl<'a> Grower<'a> {
+    /// A grower of all shapes along their principal axes, whose rims stand out nowhere, for splats that curves cut.
+    #[must_use]
+    pub fn new(surface: &'a Surface, budget: Budget, round: &'a Round<'a>) -> Self {
+        Self { surface, budget, shapes: Shapes::All, axes: Axes::Principal, open: &[], overhang: 0.0, round }
+    }
 }
 
 impl Grower<'_> {

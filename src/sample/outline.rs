@@ -24,7 +24,8 @@ pub struct Outline {
     pub ends: bool,
 }
 
-/// Places told of on each side of an outline.
+/// Places told of on each side of an outline. Sides are short beside the stretches along which a curve that runs
+/// beside the rim may leave an ellipse, but for long straight ones.
 const PLACES: u32 = 4;
 
 /// A side of a border: the points it leads from and to.
@@ -37,12 +38,11 @@ impl Outline {
     /// for the next place of a curve to begin at.
     #[must_use]
     pub fn near(&self, place: DVec3, reach: f64, last: &Cell<usize>) -> bool {
-        let vertex =
-            |n: usize| self.points[n % self.points.len()].extend(self.heights[n % self.points.len()]);
-        let sides = self.points.len() - usize::from(!self.closed);
+        let sides = self.sides();
         let around = |n: usize| last.get() + if n.is_multiple_of(2) { sides - n / 2 } else { n / 2 + 1 };
-        let is_near =
-            |side: &usize| nearest_on(vertex(*side), vertex(side + 1), place).distance(place) <= reach;
+        let is_near = |side: &usize| {
+            nearest_on(self.vertex(*side), self.vertex(side + 1), place).distance(place) <= reach
+        };
         let found = (0..sides).map(|n| around(n) % sides).find(is_near);
         last.set(found.unwrap_or(last.get()));
         found.is_some()
@@ -50,13 +50,20 @@ impl Outline {
 
     /// Places along it, a few on each side, in splat coordinates.
     pub fn places(&self) -> impl Iterator<Item = DVec3> {
-        let count = self.points.len();
-        let vertex = move |n: usize| self.points[n % count].extend(self.heights[n % count]);
-        let sides = count - usize::from(!self.closed);
-        let on_side = move |n: usize| {
-            (0..PLACES).map(move |k| vertex(n).lerp(vertex(n + 1), (f64::from(k) + 0.5) / f64::from(PLACES)))
-        };
-        (0..sides).flat_map(on_side)
+        let share = |k: u32| (f64::from(k) + 0.5) / f64::from(PLACES);
+        let on_side =
+            move |n: usize| (0..PLACES).map(move |k| self.vertex(n).lerp(self.vertex(n + 1), share(k)));
+        (0..self.sides()).flat_map(on_side)
+    }
+
+    fn sides(&self) -> usize {
+        self.points.len() - usize::from(!self.closed)
+    }
+
+    /// A vertex in splat coordinates; after the last of a loop comes the first.
+    fn vertex(&self, n: usize) -> DVec3 {
+        let n = n % self.points.len();
+        self.points[n].extend(self.heights[n])
     }
 
     /// Where it turns sharply to either side, in splat coordinates.

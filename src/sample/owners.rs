@@ -31,14 +31,14 @@ impl Owners {
     /// For each candidate of the cover its share of the surface, ascending: the pieces whose middles lie deeper in
     /// it than in others, and what it covers of those that are `common`; none if it is not chosen.
     pub(super) fn shares(&self, cover: &Cover, surface: &Surface, common: &[bool]) -> Rows {
-        let depth = |owner: u32, middle: DVec3| {
+        let share = |owner: u32, middle: DVec3| {
             let splat = &cover.candidates[owner as usize].splat;
-            -splat.ellipse(splat.to_local(middle).truncate())
+            splat.ellipse(splat.to_local(middle).truncate())
         };
         let deepest = |piece: u32| {
             let middle = surface.middle(piece);
-            let depths = self.0.row(piece).iter().map(|&owner| (depth(owner, middle), owner));
-            depths.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, owner)| owner)
+            let shares = self.0.row(piece).iter().map(|&owner| (share(owner, middle), owner));
+            shares.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, owner)| owner)
         };
         let pieces = 0..cover.times.len() as u32;
         let deepest: Vec<Option<u32>> = pieces.clone().into_par_iter().map(deepest).collect();

@@ -233,7 +233,6 @@ mod tests {
     use crate::analyse::surface::Surface;
     use crate::analyse::weld::Welded;
     use crate::fit::clip::Clips;
-    use crate::fit::pose::{Axes, Shapes};
     use crate::sample::budget::Budget;
     use crate::sample::grow::Round;
     use crate::tolerance::QUANTIZE_SHARE;
@@ -242,16 +241,7 @@ mod tests {
     const BOUND: f64 = 0.05;
 
     fn grower<'a>(surface: &'a Surface, round: &'a Round<'a>) -> Grower<'a> {
-        let budget = Budget::new(BOUND, Clips::Curved);
-        Grower {
-            surface,
-            budget,
-            shapes: Shapes::All,
-            axes: Axes::Principal,
-            open: &[],
-            overhang: 0.0,
-            round,
-        }
+        Grower::new(surface, Budget::new(BOUND, Clips::Curved), round)
     }
 
     #[test]

@@ -112,23 +112,13 @@ pub(super) mod tests {
     use super::*;
     use crate::analyse::surface::Surface;
     use crate::fit::clip::Clips;
-    use crate::fit::pose::{Axes, Shapes};
     use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
     use glam::{DVec2, DVec3};
 
     /// Grows nothing, since nothing can be stored.
     pub(in crate::sample) fn fruitless(surface: &Surface) -> Grower<'_> {
-        let budget = Budget::new(0.01, Clips::Curved);
-        Grower {
-            surface,
-            budget,
-            shapes: Shapes::All,
-            axes: Axes::Principal,
-            open: &[],
-            overhang: 0.0,
-            round: &|_| None,
-        }
+        Grower::new(surface, Budget::new(0.01, Clips::Curved), &|_| None)
     }
 
     /// Discs of a radius in the plane, at places on the x axis; the first is chosen.

@@ -258,7 +258,6 @@ mod tests {
     use crate::analyse::cloud_normals::NormalSource;
     use crate::analyse::cloud_surface::{Lines, cloud_surface};
     use crate::analyse::planted::{normal, random};
-    use crate::fit::pose::{Axes, Shapes};
     use crate::model::cloud::Cloud;
     use crate::sample::budget::Budget;
     use glam::{DMat3, Vec2Swizzles, Vec3};
@@ -289,15 +288,7 @@ mod tests {
             };
             Some(Splat { clips: splat.clips.iter().map(stored).collect(), ..splat.clone() })
         };
-        let grower = Grower {
-            surface: &surface,
-            budget: Budget::new(bound, Clips::Curved),
-            shapes: Shapes::All,
-            axes: Axes::Principal,
-            open: &[],
-            overhang: 0.0,
-            round: &coarse,
-        };
+        let grower = Grower::new(&surface, Budget::new(bound, Clips::Curved), &coarse);
         let mut region = Region::new(surface.points.len());
         let pieces = (0..surface.pieces.len() as u32).step_by(50);
         let grown: Vec<Candidate> = pieces.filter_map(|piece| grower.grow(piece, &mut region)).collect();

@@ -5,13 +5,12 @@ use glam::{DVec2, DVec3};
 use super::backing::{Backing, Look};
 use super::candidates::Regions;
 use super::cover::Cover;
-use super::grow::{Cut, Grower};
+use super::grow::{Cut, Grower, passes, well_inside};
 use super::outline::Outline;
 use super::region::Region;
 use super::settle::{Candidate, ROUNDED_SLACK};
 use crate::error::Result;
 use crate::fit::clip::ClipTolerance;
-use crate::fit::ellipse::holds;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -78,8 +77,9 @@ impl Trial for Cuts<'_> {
         let cut = Cut { clips, radii: splat.radii, curvature: splat.curvature };
         !covered.iter().any(cuts)
             && strayed.iter().all(cuts)
-            && cut.follows(outlines, tolerance, Look::Fine)
-            && follows_all(&cut, followed, tolerance)
+            && cut
+                .border_along(outlines, tolerance, Look::Fine)
+                .is_some_and(|border| followed.iter().all(|&place| passes(&border, place, tolerance.edge)))
             && backing.holds(clips)
     }
 }
@@ -98,23 +98,11 @@ fn uncut<'a>(candidate: &'a Candidate, grower: &'a Grower, region: &mut Region) 
 /// The places of outlines, farther inside a splat's ellipse than curves lie outside lines, that its border passes
 /// within the tolerance for edges. Nearer to the rim a line is left for the next splat along it.
 fn followed(splat: &Splat, outlines: &[Outline], tolerance: &ClipTolerance) -> Vec<DVec3> {
-    let border =
-        Cut { clips: &splat.clips, radii: splat.radii, curvature: splat.curvature }.border(tolerance);
-    let inner = splat.radii - tolerance.outset;
-    let inside = |place: &DVec3| inner.min_element() > 0.0 && holds(place.truncate(), inner);
-    let places = outlines.iter().flat_map(Outline::places).filter(inside);
-    places.filter(|&place| passes(&border, place, tolerance)).collect()
-}
-
-/// Whether a border passes them all.
-fn follows_all(cut: &Cut<'_>, places: &[DVec3], tolerance: &ClipTolerance) -> bool {
+    let cut = Cut { clips: &splat.clips, radii: splat.radii, curvature: splat.curvature };
     let border = cut.border(tolerance);
-    places.iter().all(|&place| passes(&border, place, tolerance))
-}
-
-/// Whether a border passes a place within the tolerance for edges.
-fn passes(border: &[DVec3], place: DVec3, tolerance: &ClipTolerance) -> bool {
-    border.iter().any(|on| on.distance(place) <= tolerance.edge)
+    let places = outlines.iter().flat_map(Outline::places);
+    let inside = places.filter(|&place| well_inside(place, splat.radii, tolerance.outset));
+    inside.filter(|&place| passes(&border, place, tolerance.edge)).collect()
 }
 
 /// The corners of what a candidate covers, or the spots.
@@ -168,7 +156,8 @@ mod tests {
         let places = followed(&splat, &[outline], &tolerance);
         let all = |clip: ClipCurve| {
             let cut = Cut { clips: &[clip], radii: splat.radii, curvature: splat.curvature };
-            follows_all(&cut, &places, &tolerance)
+            let border = cut.border(&tolerance);
+            places.iter().all(|&place| passes(&border, place, tolerance.edge))
         };
         assert!(places.len() > 1, "{places:?}");
         assert!(all(along(0.06)) && !all(bulging));

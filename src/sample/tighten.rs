@@ -60,8 +60,7 @@ fn tighter(candidate: &Candidate, share: &[u32], grower: &Grower, region: &mut R
     let smaller =
         |found: &Candidate| area(found) < area(candidate) && cost(&found.splat) <= cost(&candidate.splat);
     let need = Need::new(grower.surface, share.to_vec(), candidate.splat.axes)?;
-    let found =
-        [Axes::Principal, Axes::Held].into_iter().filter_map(|axes| need.enclosed(axes, grower, region));
+    let found = Axes::ALL.into_iter().filter_map(|axes| need.enclosed(axes, grower, region));
     found.filter(smaller).min_by(|a, b| area(a).total_cmp(&area(b)))
 }
 
@@ -78,21 +77,13 @@ mod tests {
     use super::super::scout::Begun;
     use super::*;
     use crate::fit::clip::Clips;
-    use crate::fit::pose::Shapes;
     use crate::model::splat::Splat;
 
     #[test]
     fn splats_shrink_to_their_shares_and_all_stays_covered() {
         let surface = waves();
-        let grower = Grower {
-            surface: &surface,
-            budget: Budget::new(0.004, Clips::Curved),
-            shapes: Shapes::All,
-            axes: Axes::Principal,
-            open: &[],
-            overhang: 0.0,
-            round: &|splat: &Splat| Some(splat.clone()),
-        };
+        let grower =
+            Grower::new(&surface, Budget::new(0.004, Clips::Curved), &|splat: &Splat| Some(splat.clone()));
         let regions = Regions::new(surface.points.len());
         let candidates = candidates(&grower, &regions, &Begun::default(), 1, |_| ());
         let count = candidates.len();
