@@ -222,7 +222,7 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
         }
         let meshed = grower.surface.spots.is_empty();
         let grow = |piece: u32, region: &mut Region| {
-            let grown = grower.grow(piece, region);
+            let grown = grower.grow(piece, region).or_else(|| grower.grow_broad(piece, region));
             if meshed { grown.or_else(|| grower.grow_overhanging(piece, region)) } else { grown }
         };
         let grown: Vec<Option<Candidate>> =

@@ -13,9 +13,10 @@ use super::budget::Budget;
 use super::outline::{Outline, holds_an_end, outlines};
 use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
+use super::starts::Starts;
 use crate::analyse::surface::Surface;
 use crate::fit::clip::{self, Care, ClipTolerance, Clips};
-use crate::fit::ellipse::{circumellipse, crossings, holds};
+use crate::fit::ellipse::{crossings, holds};
 use crate::fit::limits::{self, Limited};
 use crate::fit::pose::{Axes, Fitting, Pose, Principal, Shapes, above, miss, principal};
 use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
@@ -31,17 +32,9 @@ const STRETCH_STEPS: [f64; 3] = [1.6, 1.25, 1.08];
 /// Steps of growth that may pass before a new point of the surface is reached.
 const PATIENCE: usize = 4;
 
-/// The least domain around a point of a cloud, in the point's margins: it must reach beyond
-/// one to cover the point.
-const LEAST_MARGINS: f64 = 1.2;
-
 /// More clip curves than this on one splat cost about as much as a second splat would: with 32, files are between
 /// 0.4 % smaller (a truck) and 1 % larger (a sheet with a hundred holes).
 pub(super) const MOST_CLIPS: usize = 8;
-
-/// The least domain around a triangle goes on beyond its corners by this factor: they must lie
-/// inside whatever is rounded.
-const LEAST_OUTSET: f64 = 1.01;
 
 /// No radius grows beyond this, in model units: the model lies within `[-1, 1]³`.
 const LONGEST_RADIUS: f64 = 4.0;
@@ -50,9 +43,6 @@ const LONGEST_RADIUS: f64 = 4.0;
 /// covers: all of it beyond a line shows that no partner cuts, and they are made for places near
 /// the line. (An ellipse around a rectangle reaches 1.42 times as far.)
 const MOST_REACH: f64 = 3.0;
-
-/// The least radius worth trying, as a share of the budget, however small the piece.
-const LEAST_SHARE: f64 = 0.02;
 
 /// A fit that turns the normal by more than this (cosine of 3°) is judged on what its own
 /// ellipse reaches.
@@ -225,8 +215,24 @@ impl Grower<'_> {
     /// The largest splat found around a piece that covers it; `None` if even the least does
     /// not keep the budget.
     pub fn grow(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
+        self.grown(Starts::of(self, piece).least(), piece, region)
+    }
+
+    /// The same for a piece that this fails for, from ellipses along it that are broader than a sliver.
+    pub fn grow_broad(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
+        let held = Self { axes: Axes::Held, ..*self };
+        held.grown(Starts::of(self, piece).broad(), piece, region)
+    }
+
+    /// The largest splat found from the first of some starts that leads to one.
+    fn grown(
+        &self,
+        mut starts: impl Iterator<Item = (Pose, DVec2)>,
+        piece: u32,
+        region: &mut Region,
+    ) -> Option<Candidate> {
         let seeds = self.surface.pieces[piece as usize];
-        self.starts(piece).find_map(|(pose, radii)| {
+        starts.find_map(|(pose, radii)| {
             let least = self.attempt(&pose, radii, &seeds, region).ok()?;
             let best = self.enlarged(least, &seeds, region);
             settle(self, best, &seeds, piece, region)
@@ -236,8 +242,8 @@ impl Grower<'_> {
     /// The domain that [`Self::grow`] would make a splat of, before it is rounded and cut with care.
     pub(super) fn domain(&self, piece: u32, region: &mut Region) -> Option<Domain> {
         let seeds = self.surface.pieces[piece as usize];
-        let least =
-            self.starts(piece).find_map(|(pose, radii)| self.attempt(&pose, radii, &seeds, region).ok())?;
+        let mut starts = Starts::of(self, piece).least();
+        let least = starts.find_map(|(pose, radii)| self.attempt(&pose, radii, &seeds, region).ok())?;
         Some(self.enlarged(least, &seeds, region))
     }
 
@@ -277,22 +283,6 @@ impl Grower<'_> {
             while grow(&mut best, DVec2::new(step, 1.0)) || grow(&mut best, DVec2::new(1.0, step)) {}
         }
         best
-    }
-
-    /// Poses at the middle of a piece, each with the least radii worth trying: first a disc, then,
-    /// for a triangle, an ellipse as slender as it is. Beside a fold the disc may be too wide.
-    fn starts(&self, piece: u32) -> impl Iterator<Item = (Pose, DVec2)> {
-        let corners = self.surface.pieces[piece as usize];
-        let normal: DVec3 = corners.iter().map(|&corner| self.surface.normal(corner)).sum();
-        let pose = Pose::at(self.surface.middle(piece), normal);
-        let flat = corners.map(|corner| pose.to_local(self.surface.point(corner)).truncate());
-        let reach = flat.iter().map(|uv| uv.length()).fold(0.0, f64::max);
-        let (theta, radii) = circumellipse(flat);
-        let margin = self.surface.piece_margin(piece);
-        let floor = (LEAST_MARGINS * margin).max(LEAST_SHARE * self.budget.fit);
-        let least = |radii: DVec2| (LEAST_OUTSET * radii).max(DVec2::splat(floor));
-        let slender = (reach > 0.0).then(|| (pose.turned(theta), least(radii)));
-        std::iter::once((pose, least(DVec2::splat(reach)))).chain(slender)
     }
 
     /// Fits a splat to what an ellipse reaches; why not, if it does not keep the budget.

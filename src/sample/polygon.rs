@@ -72,6 +72,23 @@ const STEP: f64 = 0.25;
 /// Steps along a radius at most.
 const MOST_STEPS: f64 = 512.0;
 
+/// Chords along some sides of a triangle.
+struct Chords {
+    /// Which sides, bit by bit.
+    cut: u32,
+    /// None along a side that passes the ellipse by.
+    clips: Vec<ClipCurve>,
+    /// The side that each runs along.
+    sides: Vec<usize>,
+}
+
+impl Chords {
+    fn cut_along(&self) -> impl Iterator<Item = usize> + use<> {
+        let cut = self.cut;
+        (0..3).filter(move |side| cut >> side & 1 == 1)
+    }
+}
+
 /// A triangle in the plane of a splat.
 struct Triangle<'a> {
     grower: &'a Grower<'a>,
@@ -97,11 +114,8 @@ impl<'a> Triangle<'a> {
         }
         let ends = (0..3).filter(|&n| self.is_border(n)).map(|n| 1 << n).sum::<u32>();
         let fewer = CUT_ALONG.into_iter().filter(|cut| cut & ends == ends && *cut != 0b111);
-        fewer
-            .filter_map(|cut| Some((cut, self.chords(cut, &outline)?)))
-            .find(|(cut, clips)| self.will_do(*cut, clips, region))
-            .map(|(_, clips)| clips)
-            .unwrap_or_else(all)
+        let mut chords = fewer.filter_map(|cut| self.chords(cut, &outline));
+        chords.find(|chords| self.will_do(chords, region)).map_or_else(all, |chords| chords.clips)
     }
 
     /// Chords along all of its sides.
@@ -122,19 +136,49 @@ impl<'a> Triangle<'a> {
     /// Whether the border of what clip curves leave goes farther beyond it than a rim may, or where it
     /// touches a line farther than a cut may.
     fn goes_far(&self, clips: &[ClipCurve]) -> bool {
-        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
-        let corners = self.outline().map(|corner| corner.extend(0.0));
-        let kept = |own: usize, uv: &DVec2| {
-            holds(*uv, self.radii) && !conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(*uv))
-        };
-        let step = (STEP * self.grower.budget.clip.miss).max(self.radii.max_element() / MOST_STEPS);
-        let along = |n: usize| conics[n].walk(step).into_iter().filter(move |uv| kept(n, uv));
-        let places = (0..conics.len()).flat_map(along);
-        let tips = between_cuts(clips, self.radii).filter(|uv| kept(conics.len(), uv));
+        let conics = self.conics(clips);
+        let arcs = between_cuts(clips, self.radii).filter(|&uv| !conics.iter().any(|conic| conic.cuts(uv)));
         let Budget { rim, clip, .. } = self.grower.budget;
-        let lined = self.corners.iter().any(|&corner| self.grower.surface.on_border(corner));
-        let most = if lined { clip.edge } else { rim };
-        places.chain(tips).any(|uv| to_triangle(corners, uv.extend(0.0)).length() > most)
+        let most = if self.touches_a_line() { clip.edge } else { rim };
+        let chords = (0..conics.len()).flat_map(|n| self.bordering(&conics, n));
+        chords.chain(arcs).any(|uv| self.beyond(uv) > most)
+    }
+
+    /// Whether a chord along a line goes on farther beyond its side and all lines than cuts may: at an acute corner
+    /// the next chord may cut it off too late.
+    fn leaves_lines(&self, sides: &[usize], chords: &[Conic], region: &Region) -> bool {
+        let local = |point: u32| self.pose.to_local(self.grower.surface.point(point));
+        let lines: Vec<[DVec3; 2]> = border_sides(self.grower.surface, region)
+            .into_iter()
+            .map(|(from, to)| [local(from), local(to)])
+            .collect();
+        let most = self.grower.budget.clip.edge;
+        let near = |place: DVec3| lines.iter().any(|&[a, b]| nearest_on(a, b, place).distance(place) <= most);
+        let leaves = |uv: DVec2| self.beyond(uv) > most && !near(uv.extend(0.0));
+        let mut along_lines = (0..chords.len()).filter(|&chord| self.is_border(sides[chord]));
+        along_lines.any(|chord| self.bordering(chords, chord).any(leaves))
+    }
+
+    fn touches_a_line(&self) -> bool {
+        self.corners.iter().any(|&corner| self.grower.surface.on_border(corner))
+    }
+
+    /// How far a place lies from the triangle.
+    fn beyond(&self, uv: DVec2) -> f64 {
+        to_triangle(self.outline().map(|corner| corner.extend(0.0)), uv.extend(0.0)).length()
+    }
+
+    fn conics(&self, clips: &[ClipCurve]) -> Vec<Conic> {
+        clips.iter().map(|clip| clip.conic(self.radii)).collect()
+    }
+
+    /// Places along a chord where it bounds what they all leave.
+    fn bordering<'c>(&self, conics: &'c [Conic], chord: usize) -> impl Iterator<Item = DVec2> + use<'c> {
+        let step = (STEP * self.grower.budget.clip.miss).max(self.radii.max_element() / MOST_STEPS);
+        let radii = self.radii;
+        let is_cut =
+            move |uv: DVec2| conics.iter().enumerate().any(|(n, conic)| n != chord && conic.cuts(uv));
+        conics[chord].walk(step).into_iter().filter(move |&uv| holds(uv, radii) && !is_cut(uv))
     }
 
     fn outline(&self) -> [DVec2; 3] {
@@ -151,20 +195,22 @@ impl<'a> Triangle<'a> {
     }
 
     /// Chords along some of the sides.
-    fn chords(&self, cut: u32, outline: &[DVec2; 3]) -> Option<Vec<ClipCurve>> {
-        let sides = (0..3).filter(|side| cut >> side & 1 == 1);
-        let chord = |side: usize| {
-            let side = [outline[side], outline[(side + 1) % 3]];
-            clip::along(side, self.radii, &self.grower.budget.clip)
-        };
-        let chords: Option<Vec<Vec<ClipCurve>>> = sides.map(chord).collect();
-        chords.map(|chords| chords.concat())
+    fn chords(&self, cut: u32, outline: &[DVec2; 3]) -> Option<Chords> {
+        let mut chords = Chords { cut, clips: Vec::new(), sides: Vec::new() };
+        for side in chords.cut_along() {
+            let ends = [outline[side], outline[(side + 1) % 3]];
+            for clip in clip::along(ends, self.radii, &self.grower.budget.clip)? {
+                chords.clips.push(clip);
+                chords.sides.push(side);
+            }
+        }
+        Some(chords)
     }
 
     /// Whether what chords along some of the sides leave has the surface below it, and reaches over
     /// no line.
-    fn will_do(&self, cut: u32, clips: &[ClipCurve], region: &Region) -> bool {
-        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
+    fn will_do(&self, chords: &Chords, region: &Region) -> bool {
+        let conics = self.conics(&chords.clips);
         let is_cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
         let kept = |uv: DVec2| (uv / self.radii).length_squared() < 1.0 && !is_cut(uv);
         let near = |member: &Member| {
@@ -172,30 +218,25 @@ impl<'a> Triangle<'a> {
         };
         region.members.iter().all(near)
             && !self.across(region).any(kept)
-            && self.is_backed(cut, clips, region, is_cut)
+            && self.is_backed(chords, region, is_cut)
+            && !self.leaves_lines(&chords.sides, &conics, region)
     }
 
     /// Whether the surface lies below the border of what chords leave: the ellipse and the chords
     /// themselves, but for where these run along the triangle.
-    fn is_backed(
-        &self,
-        cut: u32,
-        clips: &[ClipCurve],
-        region: &Region,
-        is_cut: impl Fn(DVec2) -> bool,
-    ) -> bool {
+    fn is_backed(&self, chords: &Chords, region: &Region, is_cut: impl Fn(DVec2) -> bool) -> bool {
         let budget = &self.grower.budget;
         let reach = budget.clip.reach();
         let below = Below::triangles(self.grower.surface, &self.pose, region.reached());
         let beside_cut = |uv: DVec2| {
-            (0..3).filter(|side| cut >> side & 1 == 1).any(|side| {
+            chords.cut_along().any(|side| {
                 let [a, b] = [side, (side + 1) % 3].map(|n| self.flat(self.corners[n]));
                 nearest_on(a.extend(0.0), b.extend(0.0), uv.extend(0.0)).distance(uv.extend(0.0)) <= reach
             })
         };
         rim_places(self.radii, budget.rim)
-            .chain(between_cuts(clips, self.radii))
-            .chain(clips.iter().flat_map(|clip| self.along(clip)))
+            .chain(between_cuts(&chords.clips, self.radii))
+            .chain(chords.clips.iter().flat_map(|clip| self.along(clip)))
             .filter(|&uv| !is_cut(uv))
             .all(|uv| below.near(uv, 0.0, budget, budget.overhang) || beside_cut(uv))
     }
