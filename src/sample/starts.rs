@@ -17,9 +17,10 @@ const LEAST_OUTSET: f64 = 1.01;
 /// The least radius worth trying, as a share of the budget, however small the piece.
 const LEAST_SHARE: f64 = 0.02;
 
-/// Least radii, in budgets for fits, of ellipses along a sliver where narrower ones fail: a strip as narrow as it says
-/// nothing of the way its surface tilts, and a rounded edge narrower than the budget, of slivers side by side, can be
-/// reached over as a whole. With these the trunk of a robot, whose screws have such edges, takes 22 % fewer bytes.
+/// Least radii, in budgets for fits, of ellipses along a sliver where narrower ones fail: the few places that those
+/// reach say nothing of the way the surface tilts, and a rounded edge narrower than the budget, of slivers side by
+/// side, can be reached over as a whole. With these the trunk of a robot, whose screws have such edges, takes 22 %
+/// fewer bytes.
 const BROAD: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// A piece as its splats begin.
