@@ -35,8 +35,8 @@ pub(super) struct Starts {
     radii: DVec2,
     /// No radius is less.
     floor: f64,
-    /// Of ellipses along a sliver.
-    breadths: [f64; BROAD.len()],
+    /// The budget for fits.
+    fit: f64,
 }
 
 impl Starts {
@@ -50,7 +50,7 @@ impl Starts {
         let (turn, radii) = circumellipse(flat);
         let fit = grower.budget.fit;
         let floor = (LEAST_MARGINS * surface.piece_margin(piece)).max(LEAST_SHARE * fit);
-        Self { pose, reach, turn, radii, floor, breadths: BROAD.map(|breadth| breadth * fit) }
+        Self { pose, reach, turn, radii, floor, fit }
     }
 
     /// The least radii worth trying: first of a disc, then, for a triangle, of an ellipse as slender as it is. Beside a
@@ -63,9 +63,10 @@ impl Starts {
     /// Ellipses along a triangle that are broader than it.
     pub(super) fn broad(&self) -> impl Iterator<Item = (Pose, DVec2)> + use<> {
         let (pose, slender) = self.slender();
-        let broader = self.breadths.into_iter().filter(move |&breadth| breadth > slender.min_element());
-        let triangle = self.is_triangle();
-        broader.filter(move |_| triangle).map(move |breadth| (pose, slender.max(DVec2::splat(breadth))))
+        let breadths =
+            if self.is_triangle() { BROAD.map(|breadth| breadth * self.fit).to_vec() } else { Vec::new() };
+        let broader = breadths.into_iter().filter(move |&breadth| breadth > slender.min_element());
+        broader.map(move |breadth| (pose, slender.max(DVec2::splat(breadth))))
     }
 
     fn is_triangle(&self) -> bool {
@@ -102,7 +103,7 @@ mod tests {
         let (bound, radius, wide, long) = (0.02_f32, 0.006_f32, 0.3_f32, 0.25_f32);
         // Across the edge: a floor, a quarter of a circle, a wall.
         let arc = (0..=SLIVERS).map(|n| {
-            let (sin, cos) = (f64::from(n) / f64::from(SLIVERS) * std::f64::consts::FRAC_PI_2).sin_cos();
+            let (sin, cos) = libm::sincos(f64::from(n) / f64::from(SLIVERS) * std::f64::consts::FRAC_PI_2);
             [radius * (sin as f32 - 1.0), radius * (cos as f32 - 1.0)]
         });
         let across: Vec<[f32; 2]> =
