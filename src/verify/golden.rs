@@ -14,7 +14,7 @@ use crate::render::{Camera, Settings, Show};
 use crate::report::png;
 
 /// Name and version of the schema of `golden.json`.
-pub const SCHEMA: &str = "qsplat-golden/1";
+pub const SCHEMA: &str = "qsplat-golden/2";
 
 /// The file beside the images.
 pub const FILE: &str = "golden.json";
@@ -49,10 +49,10 @@ pub struct Limits {
 impl Default for Limits {
     /// The CPU reference repeats itself exactly, so these leave room for other renderers only:
     /// 32-bit arithmetic moves a rim by a rounding error, which turns single samples, of which
-    /// a pixel has four. Between CPU and software Vulkan the worst of nine models, with 123 to
-    /// 7086 splats, came to 0.00003, 0.00000 and 0.026, which is one such sample. One splat
-    /// whose rim is lifted by five error budgets comes to a block of 0.05 and more wherever it
-    /// is seen.
+    /// a pixel has [`SAMPLES`] a side. Between CPU and software Vulkan the worst of seven models, with
+    /// 96 to 3594 splats, came to 0.00001, 0.00006 and 0.009. Of thirty single splats of three of them,
+    /// lifted by five error budgets, those of more than ten budgets' radius came to a block of 0.11 and more,
+    /// three of a pixel's size to 0.034 to 0.042.
     fn default() -> Self {
         Self { flip_mean: 0.001, flip_p99: 0.01, flip_block: 0.04 }
     }
@@ -73,6 +73,11 @@ pub struct View {
 /// Pixels a side of new goldens: a splat of a hundredth of the model is five pixels wide, and
 /// a view takes some ten kilobytes.
 const SIDE: u32 = 384;
+
+/// Samples along each side of a pixel. A sample on a rim is all that rounding can turn, and what it then shows may
+/// be as far away as a picture has room for, a wall behind a face: with 2 a side one such sample came to a worst
+/// block of 0.043, as much as a wrong splat.
+const SAMPLES: u32 = 4;
 
 /// `golden.json` above this size is refused unread; a view takes some 400 bytes.
 const FILE_LIMIT: u64 = 1 << 20;
@@ -173,24 +178,23 @@ impl Golden {
 
     /// Draws a view.
     ///
-    /// The renderer does not antialias data such as normals, so that a pixel on a rim that
-    /// another renderer rounds to the other side would change wholly. Here data is a picture
-    /// like any other, so it is drawn twice as large and averaged.
+    /// Every picture is drawn larger than it is kept and averaged, data such as normals too, which
+    /// the renderer does not antialias: here they are pictures like any other.
     ///
     /// # Errors
     /// Whatever `draw` returns, and [`Error::Internal`] if it gives another size than asked.
     pub(super) fn draw(&self, view: &View, draw: &mut Draw<'_>) -> Result<RgbImage> {
-        let factor = if view.show.is_data() { 2 } else { 1 };
+        let plain = Settings { show: view.show, ..Settings::default() };
+        let factor = SAMPLES / plain.factor();
         let size = self.size.map(|side| side.saturating_mul(factor));
-        let settings = Settings { size, show: view.show, ..Settings::default() };
-        let picture = draw(&view.camera, &settings)?;
+        let picture = draw(&view.camera, &Settings { size, ..plain })?;
         if picture.dimensions() != size.into() {
             return Err(Error::Internal(format!(
                 "asked for {size:?} pixels, drew {:?}",
                 picture.dimensions()
             )));
         }
-        Ok(if factor == 2 { halved(&picture) } else { picture })
+        Ok(averaged(&picture, factor))
     }
 
     /// Reads the image of a view.
@@ -233,13 +237,16 @@ impl Golden {
     }
 }
 
-/// Means of squares of 2 by 2 pixels.
-fn halved(picture: &RgbImage) -> RgbImage {
-    RgbImage::from_fn(picture.width() / 2, picture.height() / 2, |x, y| {
-        let four =
-            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| picture.get_pixel(2 * x + dx, 2 * y + dy).0);
-        let mean = |c: usize| (four.iter().map(|pixel| u16::from(pixel[c])).sum::<u16>() + 2) / 4;
-        Rgb([0, 1, 2].map(|c| mean(c) as u8))
+/// Means of squares of `factor` by `factor` pixels, as bytes are.
+fn averaged(picture: &RgbImage, factor: u32) -> RgbImage {
+    let count = factor * factor;
+    RgbImage::from_fn(picture.width() / factor, picture.height() / factor, |x, y| {
+        let mut sums = [count / 2; 3];
+        for place in 0..count {
+            let pixel = picture.get_pixel(factor * x + place % factor, factor * y + place / factor).0;
+            sums.iter_mut().zip(pixel).for_each(|(sum, byte)| *sum += u32::from(byte));
+        }
+        Rgb(sums.map(|sum| (sum / count) as u8))
     })
 }
 

@@ -11,7 +11,7 @@ use super::*;
 use crate::model::asset::Accuracy;
 use crate::model::frame::Frame;
 use crate::model::splat::Splat;
-use crate::render::cpu;
+use crate::render::{Show, cpu};
 
 /// A sphere of 6 x 6 x 6 - 4 x 4 x 4 caps, a little larger than they need to be.
 fn ball() -> Asset {
@@ -92,6 +92,25 @@ fn one_changed_number_fails_and_the_page_shows_where() {
             assert_eq!((picture.width(), picture.height()), (144, 144), "{file}");
         }
     }
+}
+
+#[test]
+fn one_sample_that_another_renderer_rounds_apart_passes() {
+    let (asset, directory) = (ball(), tempfile::tempdir().unwrap());
+    bless_small(&asset, directory.path());
+    let mut draw = reference(&asset);
+    let mut one_apart = |camera: &Camera, settings: &Settings| {
+        let mut picture = draw(camera, settings)?;
+        if settings.show == Show::Normals {
+            let [x, y] = settings.size.map(|side| side / 2);
+            let farthest = picture.get_pixel(x, y).0.map(|byte| if byte > 127 { 0 } else { 255 });
+            picture.put_pixel(x, y, image::Rgb(farthest));
+        }
+        Ok(picture)
+    };
+    let verdict = check(&asset, directory.path(), None, &mut one_apart).unwrap();
+    assert!(verdict.passed(), "{}", verdict.text());
+    assert!(verdict.views.iter().any(|view| view.scores.block.mean > 0.0), "the sample was turned");
 }
 
 #[test]
