@@ -51,9 +51,11 @@ const SHARPER: f64 = 2.0;
 /// of one splat.
 const FOLDED: f64 = 0.26;
 
-/// A crease whose faces turn from each other by more than this (cosine of 90°) matters where no splat fits beside it,
-/// and wherever one over the two faces misses them: such a splat cannot be had at all.
-const BACK: f64 = 0.0;
+/// A crease whose faces turn from each other by more than this (cosine of 60°) is a fold. It matters where no splat
+/// fits beside it, and wherever one over the two faces misses them: how far splats reach beside it says little where
+/// a wall is narrow, as that of a screw's hole is. The right angles of machined parts are well within; at 90° parts
+/// of robots take up to a fifth more bytes, and at 40° scans up to 4 % more.
+const FOLD: f64 = 0.5;
 
 /// Places along each side of a face that are looked at, less one.
 const LATTICE: u32 = 3;
@@ -152,13 +154,14 @@ impl<'a> Patches<'a> {
         let Some((left, right)) = self.edges.pair(edge) else { return true };
         let [a, b] = self.welded.places(edge.ends);
         let middle = 0.5 * (a + b);
-        if self.fold_misses([left, right], worth) {
-            return true;
-        }
         let mut misfit = |radius: f64, over: bool, faces: &[u32]| {
             let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
             patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
         };
+        if self.fold_misses([left, right], worth) {
+            // Nothing that is lower than the bound keeps splats from going over it.
+            return misfit(OVER * worth.reach, true, &[left.face, right.face]) > worth.max_error;
+        }
         let fitted = DEPTHS.iter().map(|share| share * worth.reach).filter_map(|depth| {
             let beside = [left.face, right.face].map(|face| misfit(depth, false, &[face]));
             let beside = beside[0].max(beside[1]);
@@ -173,13 +176,13 @@ impl<'a> Patches<'a> {
             .unwrap_or_else(|| self.folds([left, right]))
     }
 
-    /// Whether the faces of two sides turn back from each other.
+    /// Whether the surface folds between the faces of two sides.
     fn folds(&self, sides: [Half; 2]) -> bool {
         let [left, right] = sides.map(|side| self.normals[side.face as usize]);
-        left.dot(right) < BACK
+        left.dot(right) < FOLD
     }
 
-    /// Whether they do, and a splat over both misses them by too much.
+    /// Whether it does, and a splat over both misses them by too much.
     fn fold_misses(&self, sides: [Half; 2], worth: &Worth<'_>) -> bool {
         let normal: DVec3 = sides.iter().map(|side| self.normals[side.face as usize]).sum();
         let misses = || {
@@ -336,8 +339,8 @@ mod tests {
             (-10..=10_i8).map(|n| (f32::from(n), -slope * f32::from(n).abs())).collect()
         };
         let nothing = |_: &[DVec3], _: DVec3| f64::INFINITY;
-        assert_eq!(kept(&roof(1.1), &[10], &nothing).0, LENGTH as usize, "95 degrees");
-        assert_eq!(kept(&roof(0.9), &[10], &nothing).0, 0, "84 degrees");
+        assert_eq!(kept(&roof(0.61), &[10], &nothing).0, LENGTH as usize, "63 degrees");
+        assert_eq!(kept(&roof(0.54), &[10], &nothing).0, 0, "57 degrees");
     }
 
     #[test]
@@ -345,9 +348,10 @@ mod tests {
         let roof = |slope: f32| -> Vec<(f32, f32)> {
             (-10..=10_i8).map(|n| (f32::from(n), -slope * f32::from(n).abs())).collect()
         };
-        let poorly = |places: &[DVec3], normal: DVec3| 0.19 + 0.01 * plane(places, normal);
-        assert_eq!(kept(&roof(1.1), &[10], &poorly).0, LENGTH as usize, "95 degrees");
-        assert_eq!(kept(&roof(0.9), &[10], &poorly).0, 0, "84 degrees");
+        let poorly = |places: &[DVec3], normal: DVec3| 0.15 + 0.08 * plane(places, normal);
+        assert_eq!(kept(&roof(1.0), &[10], &poorly).0, LENGTH as usize, "a right angle");
+        assert_eq!(kept(&roof(0.61), &[10], &poorly).0, LENGTH as usize, "63 degrees");
+        assert_eq!(kept(&roof(0.54), &[10], &poorly).0, 0, "57 degrees");
         let low: Vec<(f32, f32)> =
             (-50..=50_i8).map(|n| (0.03 * f32::from(n), if n == 0 { 0.04 } else { 0.0 })).collect();
         assert_eq!(kept(&low, &[50], &plane).0, 0, "lower than the bound");
