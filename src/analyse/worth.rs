@@ -93,20 +93,29 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f6
 }
 
 /// Marks folds that are worth a cut and lead on from a feature edge: splats are cut along them whether or not they are
-/// lines, and those that touch a line are to be cut along lines alone.
+/// lines, and those that touch a line are to be cut along lines alone. Beyond the end of a line any fold is worth one:
+/// the surface is cut open there ([`super::line_ends`]), and seen to be.
 pub fn carry_folds_on(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
     let patches = Patches::new(welded, edges, marked);
-    let pairs = edges.edges.par_iter().map(|edge| edges.pair(edge));
-    let misses =
-        pairs.map(|pair| pair.is_some_and(|(left, right)| patches.fold_misses([left, right], worth)));
-    let misses: Vec<bool> = misses.collect();
-    let folds = EdgePaths::new(welded, edges, |index| misses[index]);
+    let fold = |edge| {
+        let (left, right) = edges.pair(edge)?;
+        patches.folds([left, right]).then(|| patches.fold_misses([left, right], worth))
+    };
+    let folds: Vec<Option<bool>> = edges.edges.par_iter().map(fold).collect();
+    let worthy = EdgePaths::new(welded, edges, |index| folds[index] == Some(true));
+    let all = EdgePaths::new(welded, edges, |_| true);
     let lines = edges.edges.iter().zip(&*marked).filter(|(_, mark)| **mark);
     let mut open: Vec<u32> = lines.flat_map(|(edge, _)| edge.ends).collect();
     while let Some(vertex) = open.pop() {
-        for &fold in folds.around(vertex) {
+        let is_border = |index: u32| edges.pair(&edges.edges[index as usize]).is_none();
+        let mut bounding =
+            all.around(vertex).iter().filter(|&&index| marked[index as usize] || is_border(index));
+        let ended = bounding.next().filter(|_| bounding.next().is_none());
+        let onward =
+            ended.and_then(|&line| all.onward(line, vertex)).filter(|&on| folds[on as usize].is_some());
+        for fold in onward.into_iter().chain(worthy.around(vertex).iter().copied()) {
             if !std::mem::replace(&mut marked[fold as usize], true) {
-                open.push(folds.beyond(fold, vertex));
+                open.push(worthy.beyond(fold, vertex));
             }
         }
     }
@@ -357,27 +366,40 @@ mod tests {
         assert_eq!(kept(&low, &[50], &plane).0, 0, "lower than the bound");
     }
 
-    #[test]
-    fn folds_lead_on_from_lines_and_from_nowhere_else() {
+    /// Steps along the ridge of a roof that are marked once folds carry on an edge that leads up to it, if that is
+    /// marked, and before and after which all is flat.
+    fn carried_on(slope: f32, led: bool, misfit: &Misfit<'_>) -> Vec<u32> {
         let roof: Vec<(f32, f32)> =
-            (-10..=10_i8).map(|n| (f32::from(n), -1.5 * f32::from(n).abs())).collect();
+            (-10..=10_i8).map(|n| (f32::from(n), -slope * f32::from(n).abs())).collect();
         let across = roof.len() as u32;
         let mut welded = prism(&roof);
-        // Flat but for the steps between these.
-        let (first, last) = (10, 30);
         for (step, row) in (0..).zip(welded.positions.chunks_exact_mut(roof.len())) {
-            row.iter_mut().filter(|_| !(first..=last).contains(&step)).for_each(|place| place.y = 0.0);
+            row.iter_mut().filter(|_| !(FIRST..=LAST).contains(&step)).for_each(|place| place.y = 0.0);
         }
         let edges = Edges::of(&welded.triangles);
-        let worth = Worth { reach: 6.0, max_error: 0.2, misfit: &plane };
         let ridge = |step: u32| edges.find(step * across + 10, (step + 1) * across + 10).unwrap();
         let mut marked = vec![false; edges.edges.len()];
-        carry_folds_on(&welded, &edges, &worth, &mut marked);
-        assert!(!marked.contains(&true), "it leaves no line");
-        marked[ridge(first - 1)] = true;
-        carry_folds_on(&welded, &edges, &worth, &mut marked);
-        let along: Vec<u32> = (0..LENGTH).filter(|&step| marked[ridge(step)]).collect();
-        assert_eq!(along, (first - 1..last).collect::<Vec<_>>());
+        marked[ridge(FIRST - 1)] = led;
+        carry_folds_on(&welded, &edges, &Worth { reach: 6.0, max_error: 0.2, misfit }, &mut marked);
+        (0..LENGTH).filter(|&step| marked[ridge(step)]).collect()
+    }
+
+    /// Where the ridge begins and ends.
+    const FIRST: u32 = 10;
+    const LAST: u32 = 30;
+
+    #[test]
+    fn folds_lead_on_from_lines_and_from_nowhere_else() {
+        assert_eq!(carried_on(1.5, true, &plane), (FIRST - 1..LAST).collect::<Vec<_>>());
+        assert!(carried_on(1.5, false, &plane).is_empty(), "it leaves no line");
+    }
+
+    #[test]
+    fn a_line_does_not_end_on_a_fold() {
+        let nothing = |_: &[DVec3], _: DVec3| 0.0;
+        assert_eq!(carried_on(1.5, true, &nothing), (FIRST - 1..LAST).collect::<Vec<_>>());
+        assert!(carried_on(1.5, false, &nothing).is_empty(), "it leaves no line");
+        assert_eq!(carried_on(0.5, true, &nothing), [FIRST - 1], "53 degrees are no fold");
     }
 
     #[test]
