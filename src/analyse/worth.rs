@@ -94,8 +94,13 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f6
 
 /// Marks folds that are worth a cut and lead on from a feature edge: splats are cut along them whether or not they are
 /// lines, and those that touch a line are to be cut along lines alone. Beyond the end of a line any fold is worth one:
-/// the surface is cut open there ([`super::line_ends`]), and seen to be.
+/// the surface is cut open there, and seen to be.
 pub fn carry_folds_on(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
+    let lines = edges.edges.iter().zip(&*marked).filter(|(_, mark)| **mark);
+    let mut open: Vec<u32> = lines.flat_map(|(edge, _)| edge.ends).collect();
+    if open.is_empty() {
+        return;
+    }
     let patches = Patches::new(welded, edges, marked);
     let fold = |edge| {
         let (left, right) = edges.pair(edge)?;
@@ -104,16 +109,16 @@ pub fn carry_folds_on(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked:
     let folds: Vec<Option<bool>> = edges.edges.par_iter().map(fold).collect();
     let worthy = EdgePaths::new(welded, edges, |index| folds[index] == Some(true));
     let all = EdgePaths::new(welded, edges, |_| true);
-    let lines = edges.edges.iter().zip(&*marked).filter(|(_, mark)| **mark);
-    let mut open: Vec<u32> = lines.flat_map(|(edge, _)| edge.ends).collect();
+    // The fold that leads on where a line ends.
+    let onward = |vertex: u32, marked: &[bool]| {
+        let bounds =
+            |index: u32| marked[index as usize] || edges.pair(&edges.edges[index as usize]).is_none();
+        let mut bounding = all.around(vertex).iter().copied().filter(|&index| bounds(index));
+        let line = bounding.next().filter(|_| bounding.next().is_none())?;
+        all.onward(line, vertex).filter(|&on| folds[on as usize].is_some())
+    };
     while let Some(vertex) = open.pop() {
-        let is_border = |index: u32| edges.pair(&edges.edges[index as usize]).is_none();
-        let mut bounding =
-            all.around(vertex).iter().filter(|&&index| marked[index as usize] || is_border(index));
-        let ended = bounding.next().filter(|_| bounding.next().is_none());
-        let onward =
-            ended.and_then(|&line| all.onward(line, vertex)).filter(|&on| folds[on as usize].is_some());
-        for fold in onward.into_iter().chain(worthy.around(vertex).iter().copied()) {
+        for fold in onward(vertex, marked).into_iter().chain(worthy.around(vertex).iter().copied()) {
             if !std::mem::replace(&mut marked[fold as usize], true) {
                 open.push(worthy.beyond(fold, vertex));
             }

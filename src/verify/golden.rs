@@ -49,7 +49,7 @@ pub struct Limits {
 impl Default for Limits {
     /// The CPU reference repeats itself exactly, so these leave room for other renderers only:
     /// 32-bit arithmetic moves a rim by a rounding error, which turns single samples, of which
-    /// a pixel has [`SAMPLES`] a side. Between CPU and software Vulkan the worst of seven models, with
+    /// a pixel has 16. Between CPU and software Vulkan the worst of seven models, with
     /// 96 to 3594 splats, came to 0.00001, 0.00006 and 0.009. Of thirty single splats of three of them,
     /// lifted by five error budgets, those of more than ten budgets' radius came to a block of 0.11 and more,
     /// three of a pixel's size to 0.034 to 0.042.
