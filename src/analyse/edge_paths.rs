@@ -32,6 +32,14 @@ impl<'a> EdgePaths<'a> {
         self.at_vertex.row(vertex)
     }
 
+    /// Those of them that bound the surface: marked ones, and those where it ends.
+    pub fn bounding(&self, vertex: u32, marked: &[bool]) -> impl Iterator<Item = u32> {
+        let bounds = |index: u32| {
+            marked[index as usize] || self.edges.pair(&self.edges.edges[index as usize]).is_none()
+        };
+        self.around(vertex).iter().copied().filter(move |&index| bounds(index))
+    }
+
     /// The other end of an edge.
     #[must_use]
     pub fn beyond(&self, index: u32, vertex: u32) -> u32 {

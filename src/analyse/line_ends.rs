@@ -37,14 +37,9 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// Whether an edge bounds the surface, as a feature edge or because it ends there.
-    fn bounds(&self, index: u32) -> bool {
-        self.marked[index as usize] || self.edges.pair(&self.edges.edges[index as usize]).is_none()
-    }
-
     /// How many edges that bound the surface meet at a vertex.
     fn borders(&self, vertex: u32) -> usize {
-        self.paths.around(vertex).iter().filter(|&&index| self.bounds(index)).count()
+        self.paths.bounding(vertex, self.marked).count()
     }
 
     /// Marked edges with an end where nothing else bounds the surface.

@@ -111,9 +111,7 @@ pub fn carry_folds_on(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked:
     let all = EdgePaths::new(welded, edges, |_| true);
     // The fold that leads on where a line ends.
     let onward = |vertex: u32, marked: &[bool]| {
-        let bounds =
-            |index: u32| marked[index as usize] || edges.pair(&edges.edges[index as usize]).is_none();
-        let mut bounding = all.around(vertex).iter().copied().filter(|&index| bounds(index));
+        let mut bounding = all.bounding(vertex, marked);
         let line = bounding.next().filter(|_| bounding.next().is_none())?;
         all.onward(line, vertex).filter(|&on| folds[on as usize].is_some())
     };
