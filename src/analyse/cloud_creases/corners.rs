@@ -44,6 +44,10 @@ const PARALLEL: f64 = 0.26;
 /// The way from an end is taken over this many of the line's places.
 const TANGENT: usize = 4;
 
+/// A line that turns by more than this (cosine of 15°) over twice so many of its places is an arc at its end.
+const CURVED: f64 = 0.966;
+const ARC: usize = 3;
+
 /// Ends looked at around one end.
 const LOOKED_AT: usize = 16;
 
@@ -80,16 +84,14 @@ struct End {
 impl End {
     fn of(line: usize, of: &Line, last: bool) -> Option<Self> {
         let count = of.places.len();
-        let inner = TANGENT.min(count.checked_sub(1)?);
-        let (place, before) = match last {
-            true => (of.places[count - 1], of.places[count - 1 - inner]),
-            false => (of.places[0], of.places[inner]),
-        };
+        count.checked_sub(2)?;
+        let back = |n: usize| of.places[if last { count - 1 - n } else { n }];
+        let place = back(0);
         Some(Self {
             line,
             last,
             place,
-            outward: (place - before).try_normalize()?,
+            outward: outward(back, count - 1)?,
             size: of.size,
             places: count,
             stands: of.length() >= LENGTHS[2] * of.size,
@@ -130,6 +132,19 @@ impl End {
     }
 }
 
+/// The direction in which a line leads on, of places so many back from its end, the last given by their number.
+fn outward(back: impl Fn(usize) -> DVec3, last: usize) -> Option<DVec3> {
+    let step = ARC.min(last / 2);
+    if step > 0 {
+        let ways = [0, step].map(|n| (back(n) - back(n + step)).normalize_or_zero());
+        if ways[0].dot(ways[1]) < CURVED {
+            // They are the tangents at a quarter and three quarters of the arc.
+            return (ways[0] + 0.5 * (ways[0] - ways[1])).try_normalize();
+        }
+    }
+    (back(0) - back(TANGENT.min(last))).try_normalize()
+}
+
 /// Where ends meet, or one runs on to, and the numbers of these.
 type Meeting = (DVec3, Vec<usize>);
 
@@ -139,7 +154,11 @@ fn ends(lines: &[Line]) -> Vec<End> {
         .collect()
 }
 
-fn search(places: impl Iterator<Item = DVec3>) -> Result<Option<Search>> {
+/// A search over places; `None` where there are none.
+///
+/// # Errors
+/// As [`Search::new`].
+pub(super) fn search(places: impl Iterator<Item = DVec3>) -> Result<Option<Search>> {
     let places: Vec<Vec3> = places.map(|place| place.as_vec3()).collect();
     if places.is_empty() { Ok(None) } else { Search::new(&places).map(Some) }
 }

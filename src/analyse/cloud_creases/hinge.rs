@@ -1,6 +1,7 @@
-//! Two half planes that meet in a line, fitted to the points around a place.
+//! Two half planes that meet in a line, fitted to the points around a place; both may bend along the line.
 
 use glam::DVec3;
+use nalgebra::{Matrix4, Vector4};
 
 use super::plane::{Moments, Plane};
 
@@ -33,6 +34,8 @@ pub(super) struct Hinge {
     pub(super) inward: [DVec3; 2],
     /// Unit normals of the half planes, of either sign.
     normals: [DVec3; 2],
+    /// By how much the sheets leave their half planes by the square of the way along the line; across the line.
+    bend: DVec3,
     /// How wide the points of each spread, as [`Plane::width`].
     pub(super) width: [f64; 2],
     /// Points within the cutoff, on each half plane.
@@ -80,14 +83,74 @@ impl Hinge {
             if inward.dot(plane.middle - foot) < 0.0 { -inward } else { inward }
         });
         let (normals, width) = ([a.normal, b.normal], [a.width, b.width]);
-        Some(Self { foot, along, inward, normals, width, held: [0; 2], scatter: f64::INFINITY })
+        let (held, scatter, bend) = ([0; 2], f64::INFINITY, DVec3::ZERO);
+        Some(Self { foot, along, inward, normals, bend, width, held, scatter })
+    }
+
+    /// The half plane that a point is of.
+    pub(super) fn side(&self, p: DVec3) -> usize {
+        self.place(p).0
     }
 
     /// The half plane that a point is of, and its distance from that plane.
     fn place(&self, p: DVec3) -> (usize, f64) {
-        let way = p - self.foot;
+        let way = self.straight(p) - self.foot;
         let side = usize::from(way.dot(self.inward[1] - self.inward[0]) > 0.0);
         (side, way.dot(self.normals[side]).abs())
+    }
+
+    /// A place as it would lie if the sheets did not bend.
+    fn straight(&self, p: DVec3) -> DVec3 {
+        let along = p.dot(self.along);
+        p - along * along * self.bend
+    }
+
+    /// The points of each half plane that lie near it, and some way from the line.
+    fn divided(&self, points: &[DVec3], near: f64, clear: f64) -> [Vec<DVec3>; 2] {
+        let mut sides = [Vec::new(), Vec::new()];
+        for &p in points {
+            let (side, distance) = self.place(p);
+            let away = (self.straight(p) - self.foot).dot(self.inward[side]);
+            if distance <= near && away >= clear {
+                sides[side].push(p);
+            }
+        }
+        sides
+    }
+
+    /// The hinge whose sheets bend along the line as its points do, as both sides of a hole's rim do: what the
+    /// line passes at the origin is its tangent there. `None` where the points do not tell.
+    pub(super) fn bent(&self, points: &[DVec3], cutoff: f64, noise: f64) -> Option<Self> {
+        let mut hinge = *self;
+        for (share, clear) in ROUNDS {
+            let sides = hinge.divided(points, share * cutoff, clear * noise);
+            let bend = hinge.bend_of([hinge.curvature(0, &sides[0])?, hinge.curvature(1, &sides[1])?]);
+            let bent = Self { bend, ..hinge };
+            let plane = |side: &[DVec3]| Moments::of(side.iter().map(|&p| bent.straight(p))).plane();
+            hinge = Self { bend, ..Self::of([plane(&sides[0])?, plane(&sides[1])?])? };
+        }
+        Some(hinge.judged(points, cutoff))
+    }
+
+    /// By how much points of one side leave its half plane by the square of their way along the line; the rest of
+    /// their heights is a plane's (least squares).
+    fn curvature(&self, side: usize, points: &[DVec3]) -> Option<f64> {
+        let (mut square, mut sides) = (Matrix4::<f64>::zeros(), Vector4::<f64>::zeros());
+        for &p in points {
+            let way = p - self.foot;
+            let (s, t) = (way.dot(self.inward[side]), p.dot(self.along));
+            let term = Vector4::new(1.0, s, t, t * t);
+            square.ger(1.0, &term, &term, 1.0);
+            sides += way.dot(self.normals[side]) * term;
+        }
+        Some(square.cholesky()?.solve(&sides)[3])
+    }
+
+    /// What bends both sheets by so much along their normals.
+    fn bend_of(&self, curvatures: [f64; 2]) -> DVec3 {
+        let [a, b] = self.normals;
+        let (to_a, to_b) = (b.cross(self.along), self.along.cross(a));
+        curvatures[0] / a.dot(to_a) * to_a + curvatures[1] / b.dot(to_b) * to_b
     }
 
     /// How far the points beside the line lie within it, where the half planes face each other, on the mean: in
@@ -96,7 +159,7 @@ impl Hinge {
         let (mut sum, mut count) = (0.0, 0.0);
         for &p in points {
             let (side, distance) = self.place(p);
-            let (way, normal) = (p - self.foot, self.normals[side]);
+            let (way, normal) = (self.straight(p) - self.foot, self.normals[side]);
             if distance <= cutoff && way.dot(self.inward[side]) < BESIDE * radius {
                 sum += way.dot(normal) * normal.dot(self.inward[1 - side]).signum();
                 count += 1.0;
@@ -120,15 +183,9 @@ impl Hinge {
     fn settled(self, points: &[DVec3], cutoff: f64, noise: f64) -> Option<Self> {
         let mut hinge = self;
         for (share, clear) in ROUNDS {
-            let mut moments = [Moments::default(); 2];
-            for &p in points {
-                let (side, distance) = hinge.place(p);
-                let away = (p - hinge.foot).dot(hinge.inward[side]);
-                if distance <= share * cutoff && away >= clear * noise {
-                    moments[side] = moments[side].with(p);
-                }
-            }
-            hinge = Self::of([moments[0].plane()?, moments[1].plane()?])?;
+            let sides = hinge.divided(points, share * cutoff, clear * noise);
+            let plane = |side: &[DVec3]| Moments::of(side.iter().copied()).plane();
+            hinge = Self::of([plane(&sides[0])?, plane(&sides[1])?])?;
         }
         Some(hinge.judged(points, cutoff))
     }
@@ -149,4 +206,50 @@ fn directions(normal: DVec3) -> Vec<DVec3> {
     });
     let askew = [normal, normal + right, normal - right, normal + up, normal - up];
     along.chain(askew).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::analyse::planted::random;
+
+    /// Points around the rim of a hole of this radius in the plane `z = 0`, in which its wall goes down; the origin
+    /// is a place of the rim, which runs along y there.
+    fn rim(radius: f64) -> Vec<DVec3> {
+        let place = |n: u64| {
+            let (angle, way) = (2.2 / radius * random(2 * n), 1.5 * (1.0 + random(2 * n + 1)));
+            let (sin, cos) = libm::sincos(angle);
+            let (out, down) = if n.is_multiple_of(2) { (radius + way, 0.0) } else { (radius, way) };
+            DVec3::new(out * cos - radius, out * sin, -down)
+        };
+        (0..60).map(place).collect()
+    }
+
+    #[test]
+    fn a_rim_bends_both_sides() {
+        for radius in [4.0, 6.0, 12.0] {
+            let points = rim(radius);
+            let flat = Hinge::fit(&points, DVec3::new(1.0, 0.0, 1.0).normalize(), 0.5, 0.0).unwrap();
+            let bent = flat.bent(&points, 0.5, 0.0).unwrap();
+            let off = bent.foot.reject_from_normalized(bent.along).length();
+            assert!(off < 0.25 / radius, "the line passes {off} beside the rim of {radius}");
+            assert!(bent.along.y.abs() > 0.99 && bent.turn().abs() < 0.1, "{bent:?}");
+            assert!(bent.scatter < 0.05 * flat.scatter, "{} for {}", bent.scatter, flat.scatter);
+            assert!((bent.bend.x * radius + 0.5).abs() < 0.1, "{} at {radius}", bent.bend);
+        }
+    }
+
+    #[test]
+    fn straight_sides_stay_straight() {
+        let place = |n: u64| {
+            let (along, way) = (3.0 * random(2 * n), 1.5 * (1.0 + random(2 * n + 1)));
+            DVec3::new(0.0, along, 0.0) + if n.is_multiple_of(2) { way * DVec3::X } else { -way * DVec3::Z }
+        };
+        let points: Vec<DVec3> = (0..60).map(place).collect();
+        let flat = Hinge::fit(&points, DVec3::new(1.0, 0.0, 1.0).normalize(), 0.5, 0.0).unwrap();
+        let bent = flat.bent(&points, 0.5, 0.0).unwrap();
+        assert!(bent.bend.length() < 1e-9 && bent.foot.length() < 1e-9, "{bent:?}");
+    }
 }

@@ -1,17 +1,19 @@
 //! Finds the creases of a cloud.
 //!
-//! 1. `samples`: where the points beside one lie as on no smooth surface, two half planes are fitted
-//!    to those around (`plane`, `hinge`); where they explain them much better than a quadric does
+//! 1. `samples`: where the points beside one lie as on no smooth surface, two half planes, which may bend along
+//!    their line, are fitted to those around (`plane`, `hinge`); where they explain them much better than a quadric does
 //!    (`bowl`), their line passes the crease.
 //! 2. `ridge`: such samples are drawn together onto one line, and thinned out along it.
 //! 3. `links`: each is linked to the next on either side; `lines` keeps the chains that are sharp
 //!    enough and smooths them.
 //! 4. `corners`: ends that lead to one place, or into another line, are carried on to it.
+//! 5. `arms`: creases too short for samples of their own are looked for between corners.
 //!
 //! Sizes are told in spacings of the points. Each stage takes what the one before made in the order of
 //! the points, which lie along a Morton curve, so that nothing depends on the order of the input or
 //! on the threads.
 
+mod arms;
 mod bowl;
 mod corners;
 mod hinge;
@@ -81,7 +83,9 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     let chains = chains(points, all.into_par_iter(), WEAK_SHARE * sought.degrees)?;
     let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
     let met = corners::join(&mut lines)?;
-    Ok(worth_it(lines, &met, sought.shortest).into_iter().map(Line::whole).collect())
+    let mut lines = worth_it(lines, &met, sought.shortest);
+    lines.extend(arms::between_corners(&lines, points, sharp)?);
+    Ok(lines.into_iter().map(Line::whole).collect())
 }
 
 /// Creases at which the surface turns by more than an angle (degrees), as far as some of the points show them, which

@@ -55,10 +55,10 @@ const ABOVE_NOISE: f64 = 13.0;
 const DROWNED: f64 = 1.0;
 
 /// Points farther from either half plane than this many spacings are not explained by it...
-const CUTOFF: f64 = 0.5;
+pub(super) const CUTOFF: f64 = 0.5;
 
 /// ... or than this many standard deviations of the noise.
-const STRAY: f64 = 3.0;
+pub(super) const STRAY: f64 = 3.0;
 
 /// The share of the points that the two half planes must explain.
 const EXPLAINED: f64 = 0.75;
@@ -166,6 +166,16 @@ impl Points<'_> {
         moments.thickness() > ROUGH * ROUGH + share * noise * noise
     }
 
+    /// The points looked at around a place.
+    pub(super) fn around(&self, place: DVec3) -> Vec<u32> {
+        self.laid.search.around(place.as_vec3(), self.count(self.laid.at(place)))
+    }
+
+    /// Where a point is.
+    pub(super) fn at(&self, point: u32) -> DVec3 {
+        self.laid.positions[point as usize].as_dvec3()
+    }
+
     /// How many points are looked at where they lie so far apart.
     fn count(&self, spacing: f64) -> usize {
         let radius = ABOVE_NOISE * self.noise / spacing;
@@ -183,17 +193,16 @@ impl Points<'_> {
         let noise = self.noise / spacing;
         let cutoff = CUTOFF.max(STRAY * noise);
         let normal = Moments::of(points.iter().copied()).plane()?.normal;
-        let smooth = bowl::scatter(&points, normal, radius, cutoff).unwrap_or(cutoff * cutoff);
+        let smooth = smooth(&points, normal, radius, cutoff);
         if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
             return None;
         }
         // A neighbourhood no larger than without noise has none of its points to spare.
         let many = points.len() > FEWEST as usize;
-        let hinge = Hinge::fit(&points, normal, cutoff, if many { noise } else { 0.0 })?;
+        let hinge = bent_as_shown(&points, normal, cutoff, if many { noise } else { 0.0 })?;
         let sound =
             is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
-        let turned = (FOLDED..turn).contains(&hinge.turn());
-        (sound && turned).then(|| Sample {
+        (sound && is_turned(&hinge, turn)).then(|| Sample {
             place: here + spacing * hinge.foot,
             along: hinge.along,
             between: (hinge.inward[0] + hinge.inward[1]).normalize_or(normal),
@@ -202,6 +211,34 @@ impl Points<'_> {
             size: radius * spacing,
         })
     }
+}
+
+/// The hinge of least squares near points, whose sheets bend where the points show that they do.
+fn bent_as_shown(points: &[DVec3], normal: DVec3, cutoff: f64, noise: f64) -> Option<Hinge> {
+    let flat = Hinge::fit(points, normal, cutoff, noise)?;
+    let better = |bent: &Hinge| {
+        (flat.scatter - bent.scatter) * points.len() as f64 > BETTER * bent.scatter.max(EXACT * EXACT)
+    };
+    Some(flat.bent(points, cutoff, noise).filter(better).unwrap_or(flat))
+}
+
+/// The mean square by which a quadric misses points, each by no more than the cutoff.
+fn smooth(points: &[DVec3], normal: DVec3, radius: f64, cutoff: f64) -> f64 {
+    bowl::scatter(points, normal, radius, cutoff).unwrap_or(cutoff * cutoff)
+}
+
+/// Whether a hinge tells of a crease whose turn has a lesser cosine than `turn`.
+fn is_turned(hinge: &Hinge, turn: f64) -> bool {
+    (FOLDED..turn).contains(&hinge.turn())
+}
+
+/// Whether a hinge explains points, in spacings, that lie beside a line, so that there is a crease.
+pub(super) fn explains(hinge: &Hinge, points: &[DVec3], normal: DVec3, noise: f64, turn: f64) -> bool {
+    let radius = points.iter().map(|p| p.length()).fold(0.0, f64::max);
+    let smooth = smooth(points, normal, radius, CUTOFF.max(STRAY * noise));
+    is_better(smooth, hinge.scatter, noise, points.len())
+        && is_held(hinge, points.len())
+        && is_turned(hinge, turn)
 }
 
 /// Whether the mean square by which a hinge misses so many points is so much less than that of a
@@ -216,9 +253,14 @@ fn is_better(quadric: f64, hinge: f64, noise: f64, points: usize) -> bool {
 /// Whether a hinge among so many points has enough of them on both sides, and lies beside their
 /// middle.
 fn is_sound(hinge: &Hinge, points: usize, radius: f64) -> bool {
+    is_held(hinge, points)
+        && hinge.width.into_iter().all(|width| width >= SIDE_WIDTH)
+        && hinge.foot.length() <= BESIDE * radius
+}
+
+/// Whether a hinge explains enough of so many points, on both sides.
+fn is_held(hinge: &Hinge, points: usize) -> bool {
     let share = |held: usize| held as f64 / points as f64;
     share(hinge.held[0] + hinge.held[1]) >= EXPLAINED
         && hinge.held.into_iter().all(|held| held >= SIDE_POINTS && share(held) >= SIDE_SHARE)
-        && hinge.width.into_iter().all(|width| width >= SIDE_WIDTH)
-        && hinge.foot.length() <= BESIDE * radius
 }

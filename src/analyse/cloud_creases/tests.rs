@@ -52,6 +52,36 @@ fn cylinder(each: u64) -> Vec<Vec3> {
     (0..6 * each).map(|n| place(n).as_vec3()).collect()
 }
 
+/// Points of the plate `[-1, 1]² × [-0.2, 0]` with a hole of this radius through it, strewn; they lie about 0.021 apart.
+fn plate(radius: f64) -> Vec<Vec3> {
+    let faces = (0..18_000_u64).filter_map(|n| {
+        let place =
+            DVec3::new(random(2 * n), random(2 * n + 1), if n.is_multiple_of(2) { 0.0 } else { -0.2 });
+        (place.truncate().length() > radius).then_some(place)
+    });
+    let wall = (0..(0.4 * PI * radius * 2250.0) as u64).map(|n| {
+        let (sin, cos) = libm::sincos(PI * random(2 * n));
+        DVec3::new(radius * cos, radius * sin, 0.1 * (random(2 * n + 1) - 1.0))
+    });
+    faces.chain(wall).map(|place| place.as_vec3()).collect()
+}
+
+/// Points of the two sides of a step, `[-1, 1] × [-1, 0] × 0` below and `[-1, 1] × [0, 1] × high` above, and of the
+/// wall between, which at `x > 0` stands back by `high`: they lie about 0.025 apart.
+fn stepped(high: f64) -> Vec<Vec3> {
+    let at = |x: f64| if x > 0.0 { high } else { 0.0 };
+    let floors = (0..6400_u64).map(|n| {
+        let (x, y) = (random(2 * n), random(2 * n + 1));
+        DVec3::new(x, y, if y < at(x) { 0.0 } else { high })
+    });
+    let count = |area: f64| (1600.0 * area) as u64;
+    let up = move |n: u64| 0.5 * high * (1.0 + random(2 * n + 1));
+    let walls = (0..count(2.0 * high)).map(move |n| DVec3::new(random(2 * n), at(random(2 * n)), up(n)));
+    let side =
+        (0..count(high * high)).map(move |n| DVec3::new(0.0, 0.5 * high * (1.0 + random(2 * n)), up(n)));
+    floors.chain(walls).chain(side).map(|place| place.as_vec3()).collect()
+}
+
 /// Points of a sphere of radius 0.8, strewn evenly.
 fn sphere(count: u64, scatter: f64) -> Vec<Vec3> {
     let place = |n: u64| {
@@ -114,6 +144,32 @@ fn a_cylinder_has_two_circles() {
     let length: f64 =
         found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
     assert!((length / (1.6 * PI) - 1.0).abs() < 0.05, "{length}");
+}
+
+#[test]
+fn the_rims_of_a_hole_as_narrow_as_seven_spacings_are_found_whole() {
+    for radius in [0.15, 0.2, 0.3] {
+        let mut found = creases(plate(radius), 0.0);
+        found.retain(|line| line[0].truncate().length() < 0.5);
+        for place in found.iter().flatten() {
+            let off = (place.truncate().length() - radius).hypot((place.z + 0.1).abs() - 0.1);
+            assert!(off < 0.007, "{radius}: {place} is {off} off, and a spacing 0.021");
+        }
+        let length: f64 =
+            found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
+        assert!((length / (4.0 * PI * radius) - 1.0).abs() < 0.03, "{radius}: {length}");
+    }
+}
+
+#[test]
+fn an_edge_too_short_for_samples_of_its_own_is_found_between_its_corners() {
+    // Ten spacings, of which the third faces at both ends leave four.
+    let found = creases(stepped(0.25), 0.0);
+    for (x, y, along) in [(0.0, 0.0, DVec3::Z), (0.0, 0.25, DVec3::Z), (0.0, 0.0, DVec3::Y)] {
+        let from = DVec3::new(x, y, 0.0);
+        let edge = [vec![from, from + 0.25 * along]];
+        assert!(apart(&edge, &found) < 0.02, "{along} from {from}: {}", apart(&edge, &found));
+    }
 }
 
 #[test]

@@ -1,0 +1,178 @@
+//! Straight creases from corner to corner, as short as a few neighbourhoods: there the third faces at both ends leave
+//! few samples or none, but its two ends are known.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::corners::search;
+use super::hinge::Hinge;
+use super::lines::Line;
+use super::plane::Moments;
+use super::samples::{CUTOFF, Points, STRAY, explains};
+use crate::error::Result;
+
+/// Corners at most this many sizes apart: longer creases have samples of their own.
+const LONGEST: f64 = 6.0;
+
+/// Corners looked at around one, and places of lines around one of an arm.
+const LOOKED_AT: usize = 16;
+
+/// Points within this share of the size count: its two faces alone, unless one is narrower.
+const BESIDE: f64 = 0.75;
+
+/// Points of third faces lie within this share of the size of the corners.
+const THIRD: f64 = 0.25;
+
+/// Places along an arm around which points are looked for lie so far apart, in its size.
+const STEP: f64 = 0.5;
+
+/// An arm's faces have points beside it all along: by chance so much of its length is empty, in its size.
+const EMPTY: f64 = 1.0;
+
+/// The crease that its points show passes its corners within this share of its size.
+const MISS: f64 = 0.2;
+
+/// An arm that passes a line, or a third corner, within this share of its size runs along it, or crosses it...
+const CLEAR: f64 = 0.4;
+
+/// ... but for what lies within this share of its size of its corners.
+const AT_CORNER: f64 = 0.6;
+
+/// Where lines end together.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    place: DVec3,
+    /// That of the lines, on the mean.
+    size: f64,
+}
+
+/// The creases between corners of some lines at which the surface turns by more than an angle whose cosine is `turn`.
+///
+/// # Errors
+/// [`crate::Error::Internal`] should the neighbour search not take the corners.
+pub(super) fn between_corners(lines: &[Line], points: &Points<'_>, turn: f64) -> Result<Vec<Line>> {
+    let corners = corners(lines);
+    let Some(near) = search(corners.iter().map(|corner| corner.place))? else { return Ok(Vec::new()) };
+    let pairs = (0..corners.len()).into_par_iter().flat_map_iter(|n| {
+        let others =
+            near.around(corners[n].place.as_vec3(), LOOKED_AT).into_iter().map(|other| other as usize);
+        others.filter(move |&other| other > n).map(move |other| (n, other))
+    });
+    let places: Vec<DVec3> = lines.iter().flat_map(|line| line.places.iter().copied()).collect();
+    let Some(along_lines) = search(places.iter().copied())? else { return Ok(Vec::new()) };
+    let is_clear = |arm: &Arm| {
+        let near = arm.steps().flat_map(|step| along_lines.around(step.as_vec3(), LOOKED_AT));
+        !near.into_iter().any(|place| arm.passes(places[place as usize]))
+    };
+    let arms = pairs.filter_map(|(a, b)| Arm::of(corners[a], corners[b]));
+    let found = arms.filter(|arm| is_clear(arm) && arm.is_creased(points, turn));
+    let mut found: Vec<Arm> = found.collect();
+    let key = |arm: &Arm| arm.ends.map(|end| end.to_array().map(f64::to_bits));
+    found.sort_unstable_by_key(key);
+    Ok(found.iter().map(Arm::line).collect())
+}
+
+/// The corners of some lines, in an order that depends on their places alone.
+fn corners(lines: &[Line]) -> Vec<Corner> {
+    let open = lines.iter().filter(|line| !line.closed);
+    let of = |line: &Line, end: &DVec3| (end.to_array().map(f64::to_bits), line.size.to_bits());
+    let ends = open
+        .flat_map(|line| [line.places.first(), line.places.last()].map(|end| end.map(|end| of(line, end))));
+    let mut ends: Vec<([u64; 3], u64)> = ends.flatten().collect();
+    ends.sort_unstable();
+    let corner = |ends: &[([u64; 3], u64)]| Corner {
+        place: DVec3::from_array(ends[0].0.map(f64::from_bits)),
+        size: ends.iter().map(|end| f64::from_bits(end.1)).sum::<f64>() / ends.len() as f64,
+    };
+    ends.chunk_by(|a, b| a.0 == b.0).filter(|ends| ends.len() > 1).map(corner).collect()
+}
+
+/// What may be a straight crease.
+#[derive(Clone, Copy, Debug)]
+struct Arm {
+    ends: [DVec3; 2],
+    size: f64,
+}
+
+impl Arm {
+    /// From corner to corner, unless they are too far apart.
+    fn of(a: Corner, b: Corner) -> Option<Self> {
+        let arm = Self { ends: [a.place, b.place], size: 0.5 * (a.size + b.size) };
+        (arm.length() <= LONGEST * arm.size && arm.length() > 0.0).then_some(arm)
+    }
+
+    fn length(&self) -> f64 {
+        self.ends[0].distance(self.ends[1])
+    }
+
+    fn along(&self) -> DVec3 {
+        (self.ends[1] - self.ends[0]) / self.length()
+    }
+
+    /// Places along it, a step apart or less, without the corners.
+    fn steps(&self) -> impl Iterator<Item = DVec3> + use<> {
+        let ([a, b], count) = (self.ends, (self.length() / (STEP * self.size)).ceil() as usize);
+        (1..=count).map(move |n| a.lerp(b, (n as f64 - 0.5) / count as f64))
+    }
+
+    fn line(&self) -> Line {
+        Line { places: self.ends.to_vec(), closed: false, size: self.size }
+    }
+
+    /// How far along it a place lies, and how far beside.
+    fn place(&self, place: DVec3) -> (f64, f64) {
+        let (way, along) = (place - self.ends[0], self.along());
+        (way.dot(along), way.reject_from_normalized(along).length())
+    }
+
+    /// Whether it passes a place, other than near its corners.
+    fn passes(&self, place: DVec3) -> bool {
+        let (along, beside) = self.place(place);
+        let corner = (AT_CORNER * self.size).min(0.25 * self.length());
+        (corner..=self.length() - corner).contains(&along) && beside <= CLEAR * self.size
+    }
+
+    /// The points beside it, ascending.
+    fn beside(&self, points: &Points<'_>) -> Vec<u32> {
+        let around = self.steps().flat_map(|step| points.around(step));
+        let mut beside: Vec<u32> = around
+            .filter(|&point| {
+                let (along, beside) = self.place(points.at(point));
+                let third = (THIRD * self.size).min(0.25 * self.length());
+                (third..=self.length() - third).contains(&along) && beside <= BESIDE * self.size
+            })
+            .collect();
+        beside.sort_unstable();
+        beside.dedup();
+        beside
+    }
+
+    /// Whether the points beside it lie on two half planes that meet there.
+    fn is_creased(&self, points: &Points<'_>, turn: f64) -> bool {
+        let middle = self.ends[0].midpoint(self.ends[1]);
+        let Some((_, spacing)) = points.laid.near(middle) else { return false };
+        let noise = points.noise / spacing;
+        let local: Vec<DVec3> =
+            self.beside(points).iter().map(|&point| (points.at(point) - middle) / spacing).collect();
+        let Some(plane) = Moments::of(local.iter().copied()).plane() else { return false };
+        let cutoff = CUTOFF.max(STRAY * noise);
+        let Some(hinge) = Hinge::fit(&local, plane.normal, cutoff, noise) else { return false };
+        let off = |end: DVec3| ((end - middle) / spacing - hinge.foot).reject_from_normalized(hinge.along);
+        let passes = |end: DVec3| off(end).length() * spacing <= MISS * self.size;
+        let is_lined = |side: usize| {
+            let on = local.iter().filter(|&&p| hinge.side(p) == side);
+            self.is_lined(on.map(|&p| middle + spacing * p))
+        };
+        self.ends.into_iter().all(passes)
+            && explains(&hinge, &local, plane.normal, noise, turn)
+            && [0, 1].into_iter().all(is_lined)
+    }
+
+    /// Whether some places lie all along it.
+    fn is_lined(&self, places: impl Iterator<Item = DVec3>) -> bool {
+        let mut along: Vec<f64> =
+            places.map(|place| self.place(place).0).chain([0.0, self.length()]).collect();
+        along.sort_unstable_by(f64::total_cmp);
+        along.windows(2).all(|pair| pair[1] - pair[0] <= EMPTY * self.size)
+    }
+}
