@@ -8,7 +8,7 @@ use super::corners::search;
 use super::hinge::Hinge;
 use super::lines::Line;
 use super::plane::Moments;
-use super::samples::{CUTOFF, Points, STRAY, explains};
+use super::samples::{Points, cutoff, explains};
 use crate::error::Result;
 
 /// Corners at most this many sizes apart: longer creases have samples of their own.
@@ -22,6 +22,9 @@ const BESIDE: f64 = 0.75;
 
 /// Points of third faces lie within this share of the size of the corners.
 const THIRD: f64 = 0.25;
+
+/// Of a short arm at most this share of its length is taken for that of its corners, so that half of it counts.
+const END_SHARE: f64 = 0.25;
 
 /// Places along an arm around which points are looked for lie so far apart, in its size.
 const STEP: f64 = 0.5;
@@ -125,11 +128,16 @@ impl Arm {
         (way.dot(along), way.reject_from_normalized(along).length())
     }
 
+    /// Whether so far along it is farther than a share of its size from both corners.
+    fn between(&self, share: f64, along: f64) -> bool {
+        let end = (share * self.size).min(END_SHARE * self.length());
+        (end..=self.length() - end).contains(&along)
+    }
+
     /// Whether it passes a place, other than near its corners.
     fn passes(&self, place: DVec3) -> bool {
         let (along, beside) = self.place(place);
-        let corner = (AT_CORNER * self.size).min(0.25 * self.length());
-        (corner..=self.length() - corner).contains(&along) && beside <= CLEAR * self.size
+        self.between(AT_CORNER, along) && beside <= CLEAR * self.size
     }
 
     /// The points beside it, ascending.
@@ -138,8 +146,7 @@ impl Arm {
         let mut beside: Vec<u32> = around
             .filter(|&point| {
                 let (along, beside) = self.place(points.at(point));
-                let third = (THIRD * self.size).min(0.25 * self.length());
-                (third..=self.length() - third).contains(&along) && beside <= BESIDE * self.size
+                self.between(THIRD, along) && beside <= BESIDE * self.size
             })
             .collect();
         beside.sort_unstable();
@@ -155,8 +162,7 @@ impl Arm {
         let local: Vec<DVec3> =
             self.beside(points).iter().map(|&point| (points.at(point) - middle) / spacing).collect();
         let Some(plane) = Moments::of(local.iter().copied()).plane() else { return false };
-        let cutoff = CUTOFF.max(STRAY * noise);
-        let Some(hinge) = Hinge::fit(&local, plane.normal, cutoff, noise) else { return false };
+        let Some(hinge) = Hinge::fit(&local, plane.normal, cutoff(noise), noise) else { return false };
         let off = |end: DVec3| ((end - middle) / spacing - hinge.foot).reject_from_normalized(hinge.along);
         let passes = |end: DVec3| off(end).length() * spacing <= MISS * self.size;
         let is_lined = |side: usize| {

@@ -44,9 +44,11 @@ const PARALLEL: f64 = 0.26;
 /// The way from an end is taken over this many of the line's places.
 const TANGENT: usize = 4;
 
-/// A line that turns by more than this (cosine of 15°) over twice so many of its places is an arc at its end.
-const CURVED: f64 = 0.966;
+/// The ways over so many of the line's places, the last and those before, tell whether it ends as an arc...
 const ARC: usize = 3;
+
+/// ... which it does if they differ by more than this (cosine of 15°): noise turns them by less.
+const CURVED: f64 = 0.966;
 
 /// Ends looked at around one end.
 const LOOKED_AT: usize = 16;
@@ -84,7 +86,9 @@ struct End {
 impl End {
     fn of(line: usize, of: &Line, last: bool) -> Option<Self> {
         let count = of.places.len();
-        count.checked_sub(2)?;
+        if count < 2 {
+            return None;
+        }
         let back = |n: usize| of.places[if last { count - 1 - n } else { n }];
         let place = back(0);
         Some(Self {

@@ -146,7 +146,7 @@ impl Hinge {
         Some(square.cholesky()?.solve(&sides)[3])
     }
 
-    /// What bends both sheets by so much along their normals.
+    /// What bends both sheets by so much along their normals, which [`FLAT`] keeps apart.
     fn bend_of(&self, curvatures: [f64; 2]) -> DVec3 {
         let [a, b] = self.normals;
         let (to_a, to_b) = (b.cross(self.along), self.along.cross(a));

@@ -55,10 +55,10 @@ const ABOVE_NOISE: f64 = 13.0;
 const DROWNED: f64 = 1.0;
 
 /// Points farther from either half plane than this many spacings are not explained by it...
-pub(super) const CUTOFF: f64 = 0.5;
+const CUTOFF: f64 = 0.5;
 
 /// ... or than this many standard deviations of the noise.
-pub(super) const STRAY: f64 = 3.0;
+const STRAY: f64 = 3.0;
 
 /// The share of the points that the two half planes must explain.
 const EXPLAINED: f64 = 0.75;
@@ -191,7 +191,7 @@ impl Points<'_> {
         let points: Vec<DVec3> = around.iter().map(offset).collect();
         let radius = (points.len() as f64 / PI).sqrt();
         let noise = self.noise / spacing;
-        let cutoff = CUTOFF.max(STRAY * noise);
+        let cutoff = cutoff(noise);
         let normal = Moments::of(points.iter().copied()).plane()?.normal;
         let smooth = smooth(&points, normal, radius, cutoff);
         if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
@@ -211,6 +211,11 @@ impl Points<'_> {
             size: radius * spacing,
         })
     }
+}
+
+/// The distance, in spacings, beyond which a point that scatters by so many is not explained.
+pub(super) fn cutoff(noise: f64) -> f64 {
+    CUTOFF.max(STRAY * noise)
 }
 
 /// The hinge of least squares near points, whose sheets bend where the points show that they do.
@@ -235,7 +240,7 @@ fn is_turned(hinge: &Hinge, turn: f64) -> bool {
 /// Whether a hinge explains points, in spacings, that lie beside a line, so that there is a crease.
 pub(super) fn explains(hinge: &Hinge, points: &[DVec3], normal: DVec3, noise: f64, turn: f64) -> bool {
     let radius = points.iter().map(|p| p.length()).fold(0.0, f64::max);
-    let smooth = smooth(points, normal, radius, CUTOFF.max(STRAY * noise));
+    let smooth = smooth(points, normal, radius, cutoff(noise));
     is_better(smooth, hinge.scatter, noise, points.len())
         && is_held(hinge, points.len())
         && is_turned(hinge, turn)
