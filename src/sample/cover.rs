@@ -142,7 +142,7 @@ impl Cover {
     }
 
     /// Adds a candidate, and takes it.
-    fn choose(&mut self, candidate: Candidate) {
+    pub(super) fn choose(&mut self, candidate: Candidate) {
         self.candidates.push(candidate);
         self.add(self.candidates.len() - 1);
     }

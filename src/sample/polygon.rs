@@ -36,11 +36,17 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or(mean);
     let pose = Pose::at(middle, normal);
     let margin = surface.piece_margin(piece);
-    let (theta, radii) = circumellipse(points.map(|point| pose.to_local(point).truncate()));
+    // A point of a cloud may be stood for by another, which its disc need not reach.
+    let is_spot = corners[0] == corners[1];
+    let (theta, radii) = if is_spot {
+        (0.0, DVec2::ZERO)
+    } else {
+        circumellipse(points.map(|point| pose.to_local(point).truncate()))
+    };
     let pose = pose.turned(theta);
     let padded = |share: f64| rounded(grower, &pose, radii + margin + share * budget.pad, DVec2::ZERO);
     let mut splat = padded(1.0)?;
-    if corners[0] != corners[1] {
+    if !is_spot {
         let triangle = |splat: &Splat| Triangle::below(splat, grower, corners);
         splat.clips = triangle(&splat).clips(region);
         if triangle(&splat).strays(&splat.clips) {
@@ -269,11 +275,15 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::cloud_surface::{Lines, cloud_surface};
     use crate::analyse::edges::Edges;
     use crate::analyse::split::split;
     use crate::analyse::surface::Surface;
+    use crate::analyse::thin::Reach;
     use crate::analyse::weld::Welded;
     use crate::fit::clip::Clips;
+    use crate::model::cloud::Cloud;
     use crate::sample::budget::Budget;
     use crate::sample::grow::Round;
     use crate::tolerance::QUANTIZE_SHARE;
@@ -283,6 +293,31 @@ mod tests {
 
     fn grower<'a>(surface: &'a Surface, round: &'a Round<'a>) -> Grower<'a> {
         Grower::new(surface, Budget::new(BOUND, Clips::Curved), round)
+    }
+
+    #[test]
+    fn the_disc_of_a_point_that_another_stands_for_reaches_no_farther_than_it_stands_for_itself() {
+        let positions =
+            (0..900).map(|n: u16| Vec3::new(f32::from(n % 30), f32::from(n / 30), 0.0) / 60.0).collect();
+        let cloud = Cloud { positions, ..Cloud::default() };
+        let reach = Reach { radius: 0.1, offset: 0.01 };
+        let (source, lines) = (NormalSource::Estimate, Lines::Given(&[]));
+        let surface = cloud_surface(&cloud, source, lines, None, Some(reach), None).unwrap().surface;
+        assert!(
+            surface.points.len() * 4 < surface.pieces.len(),
+            "{} points stand for all",
+            surface.points.len()
+        );
+        let round = |splat: &Splat| Some(splat.clone());
+        let grower = grower(&surface, &round);
+        let mut region = Region::new(surface.points.len());
+        for piece in 0..surface.pieces.len() as u32 {
+            let Splat { center, radii, .. } = over(&grower, piece, &mut region).unwrap().splat;
+            let radius = surface.piece_margin(piece) + grower.budget.pad;
+            assert!(
+                center.distance(surface.middle(piece)) < 1e-9 && (radii - radius).abs().max_element() < 1e-9
+            );
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::candidates::Regions;
 use super::cover::Cover;
 use super::grow::Grower;
+use super::polygon;
 use super::region::Region;
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
@@ -59,14 +60,16 @@ impl Cover {
             .collect()
     }
 
-    /// A splat grown where a ray meets the surface, the largest that stops the ray.
+    /// A splat grown where a ray meets the surface, the largest that stops the ray, or else one over the
+    /// piece there alone.
     fn grown_at(&self, grower: &Grower, regions: &Regions, sight: &Sight) -> Option<Candidate> {
         let surface = grower.surface;
         let distance = |piece: u32| surface.middle(piece).distance_squared(sight.at);
         let nearest =
             (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
         let serves = |made: &Candidate| sight.is_stopped(&made.splat) && self.is_inside(made);
-        made_within(&NEARER, grower, regions, (grown, nearest), serves)
+        let made = |make: Make| made_within(&NEARER, grower, regions, (make, nearest), serves);
+        made(grown).or_else(|| made(polygon::over))
     }
 }
 
@@ -110,15 +113,34 @@ pub(super) fn made_within(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::analyse::surface::Surface;
+    use crate::analyse::surface::{NONE, Rows, Spot, Surface};
     use crate::fit::clip::Clips;
+    use crate::model::splat::Splat;
     use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
-    use glam::{DVec2, DVec3};
+    use glam::{DVec2, DVec3, Vec3};
 
     /// Grows nothing, since nothing can be stored.
     pub(in crate::sample) fn fruitless(surface: &Surface) -> Grower<'_> {
         Grower::new(surface, Budget::new(0.01, Clips::Curved), &|_| None)
+    }
+
+    /// One point of a cloud, at the origin, that stands for 0.1 around it, joined to two that no splat reaches
+    /// over together.
+    pub(in crate::sample) fn lone_spot() -> Surface {
+        Surface {
+            points: vec![Vec3::ZERO, Vec3::new(0.09, 0.0, 0.05), Vec3::new(0.09, 0.0, -0.05)],
+            places: vec![0, 1, 2],
+            normals: vec![Vec3::Z; 3],
+            neighbours: Rows::symmetric(3, |row| [1, 2].into_iter().filter(move |_| row == 0)),
+            pieces: vec![[0; 3]],
+            spots: vec![Spot { position: Vec3::ZERO, margin: 0.1 }],
+            pieces_of: Rows::consecutive(&[1, 0, 0]),
+            margin: vec![0.1, 0.0, 0.0],
+            border_next: vec![NONE; 3],
+            border_prev: vec![NONE; 3],
+            ..Surface::default()
+        }
     }
 
     /// Discs of a radius in the plane, at places on the x axis; the first is chosen.
@@ -148,6 +170,17 @@ pub(super) mod tests {
         assert_eq!((seal(&mut cover, &[2.0, 3.0]), cover.chosen.as_slice()), (1, &[0, 3][..]));
         assert_eq!(cover.times, [2]);
         assert_eq!((seal(&mut cover, &[2.1, 8.5]), cover.chosen.as_slice()), (2, &[0, 3, 1, 4][..]));
+    }
+
+    #[test]
+    fn where_none_can_be_grown_a_piece_gets_one_of_its_own() {
+        let surface = lone_spot();
+        let round = |splat: &Splat| Some(splat.clone());
+        let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
+        assert!(grown(&grower, 0, &mut Region::new(3)).is_none());
+        let mut cover = cover(&[(3.0, 1.0)]);
+        assert_eq!(cover.seal(&grower, &Regions::new(3), &sights(&[0.09])), 1);
+        assert!(cover.candidates[cover.chosen[1]].last_resort);
     }
 
     #[test]

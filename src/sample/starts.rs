@@ -27,7 +27,8 @@ const BROAD: [f64; 3] = [1.0, 0.5, 0.25];
 pub(super) struct Starts {
     /// At its middle.
     pose: Pose,
-    /// How far its corners lie from there; 0 for a point.
+    /// How far its corners lie from there, or the point of a cloud that stands for it; 0 for one that stands for
+    /// itself.
     reach: f64,
     /// The turn of the least ellipse around it, from the pose's axes.
     turn: f64,
@@ -53,23 +54,23 @@ impl Starts {
         Self { pose, reach, turn, radii, floor, fit }
     }
 
-    /// The least radii worth trying: first of a disc, then, for a triangle, of an ellipse as slender as it is. Beside a
-    /// fold the disc may be too wide.
+    /// The least radii worth trying: first of a disc, then, but for a lone point, of an ellipse as slender as the piece
+    /// is. Beside a fold the disc may be too wide.
     pub(super) fn least(&self) -> impl Iterator<Item = (Pose, DVec2)> + use<> {
-        let slender = self.is_triangle().then(|| self.slender());
+        let slender = self.is_extended().then(|| self.slender());
         std::iter::once((self.pose, self.outset(DVec2::splat(self.reach)))).chain(slender)
     }
 
-    /// Ellipses along a triangle that are broader than it.
+    /// Ellipses along a piece that are broader than it.
     pub(super) fn broad(&self) -> impl Iterator<Item = (Pose, DVec2)> + use<> {
         let (pose, slender) = self.slender();
         let breadths =
-            if self.is_triangle() { BROAD.map(|breadth| breadth * self.fit).to_vec() } else { Vec::new() };
+            if self.is_extended() { BROAD.map(|breadth| breadth * self.fit).to_vec() } else { Vec::new() };
         let broader = breadths.into_iter().filter(move |&breadth| breadth > slender.min_element());
         broader.map(move |breadth| (pose, slender.max(DVec2::splat(breadth))))
     }
 
-    fn is_triangle(&self) -> bool {
+    fn is_extended(&self) -> bool {
         self.reach > 0.0
     }
 

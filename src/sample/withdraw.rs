@@ -24,14 +24,17 @@ const NEARER: [f64; 9] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.35, 0.25, 0.125];
 /// more is about as long as the outline itself.
 const MOST_BATCHES: usize = 64;
 
-/// Pieces that get splats of their own, at most, where nothing larger can be grown: more of them cost
-/// too much for what little shows.
-const MOST_LEFT: usize = 16;
+/// So few pieces get splats of their own where nothing larger can be grown.
+const FEW: usize = 16;
+
+/// And more, up to this share of the splats: still more of them cost too much for what little shows. Of the raw
+/// scans of a dragon at 0.3 % a tenth are asked for, and make the file half a percent larger.
+const MOST_LEFT: f64 = 0.125;
 
 impl Cover {
     /// Takes out the chosen splats that stop rays which pass beside the surface, and adds the cheapest
-    /// known or grown that cover their pieces and stop no such ray, now or before; how many are out. Those
-    /// over pieces that no other covers stay for good.
+    /// known or grown that cover their pieces and stop no such ray, now or before; how many are out. Over
+    /// pieces that no such splat covers, what stops the fewest of the rays stays for good.
     pub fn withdraw(&mut self, grower: &Grower, regions: &Regions, beside: &[Sight]) -> usize {
         self.beside.extend_from_slice(beside);
         let shows = |index: &usize| {
@@ -48,21 +51,44 @@ impl Cover {
         let middles = middles(&self.candidates, &shown, grower);
         self.offer_at(&middles, grown, grower, regions, &bare, &mut offers);
         let left = self.offer_over(grower, regions, &bare, &mut offers);
-        if left.len() <= MOST_LEFT {
+        let most = MOST_LEFT * self.chosen.len() as f64;
+        if left.len() <= FEW.max(most as usize) {
             self.offer_at(&left, polygon::over, grower, regions, &bare, &mut offers);
         }
         for index in self.cheapest(&offers, self.areas.len()) {
             self.add(index);
         }
-        let mut withdrawn = shown.len();
-        for index in shown {
-            if self.is_needed(index) {
-                self.add(index);
-                self.lasting.insert(index);
-                withdrawn -= 1;
-            }
+        shown.into_iter().filter(|&index| !self.is_put_back(index, grower, regions)).count()
+    }
+
+    /// Whether a splat that was taken out is back, since nothing else covers some of its pieces.
+    ///
+    /// Where the nearest splats over those pieces themselves stop fewer of the rays beside the surface, these
+    /// are taken instead. What is taken stays for good.
+    fn is_put_back(&mut self, index: usize, grower: &Grower, regions: &Regions) -> bool {
+        let bare = |piece: &u32| self.times[*piece as usize] == 0;
+        let own: Vec<u32> = self.candidates[index].pieces.iter().copied().filter(bare).collect();
+        if own.is_empty() {
+            return false;
         }
-        withdrawn
+        let nearer = nearest_over(&own, grower, regions);
+        let stopped = |candidates: &[Candidate]| {
+            let stops = |ray: &&Sight| candidates.iter().any(|one| ray.is_stopped(&one.splat));
+            self.beside.iter().filter(stops).count()
+        };
+        let fewer = |nearer: &Vec<Candidate>| {
+            stopped(nearer) < stopped(std::slice::from_ref(&self.candidates[index]))
+        };
+        let Some(nearer) = nearer.filter(fewer) else {
+            self.add(index);
+            self.lasting.insert(index);
+            return true;
+        };
+        for candidate in nearer {
+            self.lasting.insert(self.candidates.len());
+            self.choose(candidate);
+        }
+        false
     }
 
     /// Takes some off the list of the chosen, of which it leaves these.
@@ -139,11 +165,6 @@ impl Cover {
         !self.beside.iter().any(|ray| ray.is_stopped(&candidate.splat))
     }
 
-    /// Whether a candidate covers a piece that no chosen one does.
-    fn is_needed(&self, index: usize) -> bool {
-        self.candidates[index].pieces.iter().any(|&piece| self.times[piece as usize] == 0)
-    }
-
     /// The cheapest candidates that do all, of so many things to do, that some do; each with what it does.
     pub(super) fn cheapest(&self, does: &[(usize, Vec<u32>)], all: usize) -> Vec<usize> {
         let costs = does.iter().map(|&(index, _)| cost(&self.candidates[index].splat)).collect();
@@ -152,6 +173,13 @@ impl Cover {
         let known = (0..does.len() as u32).collect();
         problem.cheaper(known).into_iter().map(|at| does[at as usize].0).collect()
     }
+}
+
+/// Splats over a few pieces themselves, as near to them as any; `None` for many.
+fn nearest_over(pieces: &[u32], grower: &Grower, regions: &Regions) -> Option<Vec<Candidate>> {
+    let least = &NEARER[NEARER.len() - 1..];
+    let over = |&piece: &u32| made_within(least, grower, regions, (polygon::over, piece), |_| true);
+    (pieces.len() <= FEW).then(|| pieces.iter().map(over).collect())?
 }
 
 /// For each of some candidates the piece in its middle.
@@ -173,8 +201,11 @@ fn common(some: &[u32], others: &[u32]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::analyse::surface::{NONE, Rows, Surface};
+    use crate::fit::clip::Clips;
+    use crate::model::splat::Splat;
+    use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
-    use crate::sample::seal::tests::fruitless;
+    use crate::sample::seal::tests::{fruitless, lone_spot};
     use glam::{DVec2, DVec3, Vec3};
 
     /// Discs in the plane at places on the x axis with radii, over some pieces; the first `chosen` are.
@@ -233,5 +264,25 @@ mod tests {
         assert_eq!((cover.chosen.as_slice(), cover.times.as_slice()), (&[2, 1][..], &[1; 3][..]));
         cover.candidates.push(Candidate { pieces: vec![1, 2], ..cover.candidates[2].clone() });
         assert_eq!(withdraw(&mut cover, &[1.5]), 0, "and for good, whatever is laid out since");
+    }
+
+    #[test]
+    fn where_all_show_those_that_show_least_stay() {
+        let surface = lone_spot();
+        let round = |splat: &Splat| Some(splat.clone());
+        let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
+        let withdrawn =
+            |cover: &mut Cover, places: &[f64]| cover.withdraw(&grower, &Regions::new(3), &beside(places));
+        let mut wide = cover(&[(0.0, 2.0, &[0])], 1, 1);
+        assert_eq!(withdrawn(&mut wide, &[-1.5, 0.05]), 1, "one of the point itself shows on one ray alone");
+        let stays = wide.chosen.clone();
+        assert!(wide.candidates[stays[0]].last_resort && wide.times == [1]);
+        assert_eq!((withdrawn(&mut wide, &[0.06]), &wide.chosen), (0, &stays), "for good");
+        let mut narrow = cover(&[(0.0, 0.1, &[0])], 1, 1);
+        assert_eq!(
+            (withdrawn(&mut narrow, &[0.05]), narrow.chosen.as_slice()),
+            (0, &[0][..]),
+            "none shows less"
+        );
     }
 }
