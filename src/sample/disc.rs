@@ -2,7 +2,7 @@
 //!
 //! It reaches as far as its point stands for the surface, which beside a line is too far across. No curve could be
 //! fitted there, or there would be a better splat; chords along some of the line do where the surface keeps to one
-//! side of them.
+//! side of them, and else one beside it, as far across as the surface goes.
 
 use glam::DVec2;
 
@@ -46,7 +46,8 @@ impl Lines<'_> {
     /// Chords along them, the nearest first, as long as some line is not cut along.
     fn chords(&self) -> Vec<ClipCurve> {
         let (mut clips, mut conics) = (Vec::new(), Vec::<Conic>::new());
-        for side in self.sides() {
+        let sides = self.sides();
+        for &side in &sides {
             if clips.len() < MOST_CLIPS
                 && !conics.iter().any(|conic| conic.cuts(self.across(side)))
                 && let Some((clip, conic)) = self.chord(side)
@@ -54,6 +55,10 @@ impl Lines<'_> {
                 clips.push(clip);
                 conics.push(conic);
             }
+        }
+        // The surface may lie around a line's bend.
+        if let (true, Some(&nearest)) = (clips.is_empty(), sides.first()) {
+            clips.extend(self.chord_beyond(nearest).map(|(clip, _)| clip));
         }
         clips
     }
@@ -84,6 +89,17 @@ impl Lines<'_> {
         let conic = clip.conic(self.radii);
         let is_kept = |member: &Member| !conic.cuts(member.local.truncate());
         self.region.members.iter().all(is_kept).then_some((clip, conic))
+    }
+
+    /// The chord beside a side, as far across it as the surface goes.
+    fn chord_beyond(&self, side: [DVec2; 2]) -> Option<(ClipCurve, Conic)> {
+        let [from, to] = side;
+        let out = -(to - from).perp().normalize_or_zero();
+        let beyond = |member: &Member| (member.local.truncate() - from).dot(out);
+        let farthest = self.region.members.iter().map(beyond).fold(0.0, f64::max);
+        let moved = side.map(|end| end + farthest * out);
+        let stands_out = self.radii.min_element() - moved[0].dot(out);
+        (stands_out > self.grower.budget.rim).then(|| self.chord(moved))?
     }
 }
 
@@ -142,6 +158,41 @@ mod tests {
         }
         let most = Budget::new(1.0, Clips::Curved).clip.edge;
         assert!(reached[0] > 2.0 && reached[1] <= most, "{reached:?} bounds beyond, uncut and cut");
+    }
+
+    #[test]
+    fn discs_beside_a_round_hole_reach_into_it_no_farther_than_the_face_around_goes() {
+        const HOLE: f64 = 0.04;
+        let around = |angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            HOLE * DVec3::new(cos, sin, 0.0)
+        };
+        let place = |n: u64| {
+            let (a, b) = (random(2 * n), random(2 * n + 1));
+            let face = DVec3::new(0.3 * a, 0.3 * b, 0.0);
+            let wall = around(std::f64::consts::PI * a) - DVec3::new(0.0, 0.0, 0.1 * (b + 1.0));
+            if n % 4 == 0 || face.length() < HOLE { wall.as_vec3() } else { face.as_vec3() }
+        };
+        let rim: Vec<DVec3> = (0..=64).map(|n| around(std::f64::consts::TAU * f64::from(n) / 64.0)).collect();
+        let discs = discs((0..12_000).map(place).collect(), &[rim]);
+        let mut beside = discs.iter().filter(|(at, _)| at.z == 0.0 && at.length() < 0.06).peekable();
+        assert!(beside.peek().is_some());
+        let (mut uncut, mut cut) = (0.0_f64, 0.0_f64);
+        for (at, splat) in beside {
+            for n in 0..64 {
+                let (sin, cos) = libm::sincos(0.1 * f64::from(n));
+                let reached = DVec2::new(cos, sin) * splat.radii;
+                let into = (HOLE - (splat.center + splat.axes * reached.extend(0.0)).length()) / BOUND;
+                uncut = uncut.max(into);
+                if !is_cut(splat, reached) {
+                    cut = cut.max(into);
+                }
+            }
+            for (other, _) in discs.iter().filter(|(other, _)| other.z == 0.0 && other.distance(*at) < 0.01) {
+                assert!(!is_cut(splat, splat.to_local(other.as_dvec3()).truncate()), "{other} over {at}");
+            }
+        }
+        assert!(uncut > 4.0 && cut < 2.0, "{uncut} bounds into the hole, cut {cut}");
     }
 
     #[test]
