@@ -171,7 +171,7 @@ mod tests {
             let (a, b) = (random(2 * n), random(2 * n + 1));
             let face = DVec3::new(0.3 * a, 0.3 * b, 0.0);
             let wall = around(std::f64::consts::PI * a) - DVec3::new(0.0, 0.0, 0.1 * (b + 1.0));
-            if n % 4 == 0 || face.length() < HOLE { wall.as_vec3() } else { face.as_vec3() }
+            if n.is_multiple_of(4) || face.length() < HOLE { wall.as_vec3() } else { face.as_vec3() }
         };
         let rim: Vec<DVec3> = (0..=64).map(|n| around(std::f64::consts::TAU * f64::from(n) / 64.0)).collect();
         let discs = discs((0..12_000).map(place).collect(), &[rim]);
