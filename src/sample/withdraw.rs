@@ -27,7 +27,7 @@ const MOST_BATCHES: usize = 64;
 /// So few pieces get splats of their own where nothing larger can be grown.
 const FEW: usize = 16;
 
-/// And more, up to this share of the splats: still more of them cost too much for what little shows. Of the raw
+/// And more, up to this share of the splats: still more of them cost too much for what little shows. Of the smoothed
 /// scans of a dragon at 0.3 % a tenth are asked for, and make the file half a percent larger.
 const MOST_LEFT: f64 = 0.125;
 
@@ -58,14 +58,14 @@ impl Cover {
         for index in self.cheapest(&offers, self.areas.len()) {
             self.add(index);
         }
-        shown.into_iter().filter(|&index| !self.is_put_back(index, grower, regions)).count()
+        shown.into_iter().filter(|&index| !self.put_back(index, grower, regions)).count()
     }
 
-    /// Whether a splat that was taken out is back, since nothing else covers some of its pieces.
+    /// Puts a splat that was taken out back if nothing else covers some of its pieces; whether it did.
     ///
     /// Where the nearest splats over those pieces themselves stop fewer of the rays beside the surface, these
     /// are taken instead. What is taken stays for good.
-    fn is_put_back(&mut self, index: usize, grower: &Grower, regions: &Regions) -> bool {
+    fn put_back(&mut self, index: usize, grower: &Grower, regions: &Regions) -> bool {
         let bare = |piece: &u32| self.times[*piece as usize] == 0;
         let own: Vec<u32> = self.candidates[index].pieces.iter().copied().filter(bare).collect();
         if own.is_empty() {
