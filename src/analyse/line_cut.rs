@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::cloud_graph::{Joined, Sites};
 use super::line_network::Network;
 use super::line_sheets::{Sheet, Sheets, too_near};
+use super::nearest::listed;
 use super::orient::Across;
 use super::segment_grid::SegmentGrid;
 use super::surface::NONE;
@@ -26,6 +27,16 @@ const JOINED: usize = 4;
 /// An estimated normal that agrees less than this (cosine of 25°) with the sheet beside whose border its point
 /// lies is of points of several sheets.
 const MIXED: f32 = 0.906;
+
+/// One that agrees less than this (cosine of 10°) may be: the more of the neighbours lie in the one plane or the other
+/// tell.
+const DOUBTFUL: f32 = 0.985;
+
+/// The way from a corner to a point of a sheet around it leaves the sheet's plane by less than this sine (11°).
+const AT_CORNER: f64 = 0.2;
+
+/// The way to a neighbour in a plane leaves it by less than this sine (6°).
+const IN_PLANE: f32 = 0.1;
 
 /// Points this many spacings from a line are joined to its border.
 const BESIDE: f64 = 1.5;
@@ -266,13 +277,39 @@ impl LineCut {
         (beside.offset.length() <= reach && !beside.at_end).then(|| &self.borders[border])
     }
 
-    /// The normal of a point, where it lies beside a border and its own mixes sheets: that of the border's.
+    /// The normal of a point, where it lies beside a border or a corner and its own mixes sheets: that of its sheet.
     #[must_use]
     pub fn mended(&self, sites: &Sites, point: u32, normal: Vec3) -> Vec3 {
         let beside = BESIDE * f64::from(sites.spacing[point as usize]);
-        let border = self.border_within(sites, point, beside.max(too_near(sites, point as usize)));
-        let sheet = border.map(|border| self.sheet(border).normal.as_vec3());
-        sheet.filter(|sheet| sheet.dot(normal) < MIXED).unwrap_or(normal)
+        let reach = beside.max(too_near(sites, point as usize));
+        let border = self.border_within(sites, point, reach).map(|border| self.sheet(border));
+        let Some(sheet) = border.or_else(|| self.sheet_at_corner(sites, point, reach)) else { return normal };
+        let (sheet, alike) = (sheet.normal.as_vec3(), sheet.normal.as_vec3().dot(normal));
+        let is_mixed = || in_plane(sites, point, sheet) > in_plane(sites, point, normal);
+        if alike < MIXED || alike < DOUBTFUL && is_mixed() { sheet } else { normal }
+    }
+
+    /// Of the sheets around the corner that is the nearest place of the lines to a point, within `reach`, the one
+    /// in whose plane the point lies.
+    fn sheet_at_corner(&self, sites: &Sites, point: u32, reach: f64) -> Option<&Sheet> {
+        let beside = self.sheets.beside[point as usize].as_ref()?;
+        if !beside.at_end || beside.offset.length() > reach {
+            return None;
+        }
+        let from = |node: u32| {
+            sites.positions[point as usize].as_dvec3() - self.network.nodes[node as usize].as_dvec3()
+        };
+        let [a, b] = self.network.segments[beside.segment as usize];
+        let node = if from(b).length() < from(a).length() { b } else { a };
+        let around = self.network.at_node.row(node);
+        // Around the end of a line the surface turns from the one sheet into the other.
+        if around.len() < 2 {
+            return None;
+        }
+        let sheets = around.iter().flat_map(|&segment| &self.sheets.of[segment as usize]);
+        let off = |sheet: &&Sheet| sheet.normal.dot(from(node)).abs();
+        let sheet = sheets.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        (off(&sheet) <= AT_CORNER * from(node).length()).then_some(sheet)
     }
 
     /// Pairs of a point on a line and a point of the cloud that the surface joins.
@@ -359,6 +396,13 @@ impl LineCut {
         let lengths = found.map(|(segment, _)| self.network.length(segment));
         lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length))
     }
+}
+
+/// How many of its neighbours lie in the plane through a point.
+fn in_plane(sites: &Sites, point: u32, normal: Vec3) -> usize {
+    let here = sites.positions[point as usize];
+    let ways = listed(&sites.nearest[point as usize]).map(|other| sites.positions[other as usize] - here);
+    ways.filter(|way| way.dot(normal).abs() <= IN_PLANE * way.length()).count()
 }
 
 #[cfg(test)]
