@@ -27,6 +27,10 @@ pub const LINE_FIT_SHARE: f64 = 0.3;
 /// move a large face by a third.
 pub const CLOUD_LINE_SHARE: f64 = 0.5;
 
+/// The same where there would be a last resort otherwise: with curves at half a budget outside their lines, which are
+/// looked for within nine tenths of one, in space, no more is left for the distance at which splats pass those.
+pub const FAR_LINE_SHARE: f64 = 0.75;
+
 /// Clip curves follow their feature line this share of the budget outside it, so that no
 /// slit opens between the two surfaces that meet there, each of which may pass the line at a
 /// distance. At corners more acute than 74° they follow it less far outside, so that the tip where two

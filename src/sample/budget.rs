@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use crate::fit::clip::{ClipTolerance, Clips};
 use crate::tolerance::{
-    CLIP_LEAST_SHARE, CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, CLOUD_LINE_SHARE, FIT_SHARE,
-    LINE_FIT_SHARE,
+    CLIP_LEAST_SHARE, CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, CLOUD_LINE_SHARE,
+    FAR_LINE_SHARE, FIT_SHARE, LINE_FIT_SHARE,
 };
 
 /// Distances that growing a splat must keep, in model units.
@@ -18,6 +18,9 @@ pub struct Budget {
     pub line: f64,
     /// The same once the splat is rounded and cut along its lines, in a cloud.
     pub cloud_line: f64,
+    /// The same where splats of a cloud may pass lines at the greatest distance, if that is what it takes to do
+    /// without a last resort.
+    pub far_line: f64,
     /// How far a quadric may sink below the surface that it reaches over but need not cover, because
     /// another splat does: twice the budget (of which quantising takes its share). The error
     /// of a quadric grows with the third power of the distance, so this is worth a quarter of
@@ -72,6 +75,7 @@ impl Budget {
             fit: FIT_SHARE * max_error,
             line: LINE_FIT_SHARE * max_error,
             cloud_line: CLOUD_LINE_SHARE * max_error,
+            far_line: FAR_LINE_SHARE * max_error,
             rim: 2.0 * FIT_SHARE * max_error,
             proud: PROUD * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,
@@ -90,11 +94,12 @@ impl Budget {
     /// A share of all of it.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
-        let &Self { fit, line, cloud_line, rim, proud, overhang, pad, clip, stored } = self;
+        let &Self { fit, line, cloud_line, far_line, rim, proud, overhang, pad, clip, stored } = self;
         Self {
             fit: share * fit,
             line: share * line,
             cloud_line: share * cloud_line,
+            far_line: share * far_line,
             rim: share * rim,
             proud: share * proud,
             overhang: share * overhang,

@@ -223,7 +223,8 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
         let meshed = grower.surface.spots.is_empty();
         let grow = |piece: u32, region: &mut Region| {
             let grown = grower.grow(piece, region).or_else(|| grower.grow_broad(piece, region));
-            if meshed { grown.or_else(|| grower.grow_overhanging(piece, region)) } else { grown }
+            let laxer = if meshed { Grower::grow_overhanging } else { Grower::grow_beside_lines };
+            grown.or_else(|| laxer(grower, piece, region))
         };
         let grown: Vec<Option<Candidate>> =
             batch.par_iter().map(|&piece| regions.with(|region| grow(piece, region))).collect();

@@ -253,6 +253,17 @@ impl Grower<'_> {
         Self { overhang: self.budget.overhang, ..*self }.grow(piece, region)
     }
 
+    /// The same for a spot of a cloud: a splat may pass lines at a greater distance, as far as its cuts still follow
+    /// them within the bound. Partners begin to cut no farther outside than the lesser distance allows.
+    pub fn grow_beside_lines(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
+        if self.budget.clip.clips == Clips::Partners {
+            return None;
+        }
+        let line = self.budget.far_line;
+        let budget = Budget { line, cloud_line: line, ..self.budget };
+        Self { budget, ..*self }.grow(piece, region)
+    }
+
     /// A domain grown as long as it keeps the budget and reaches more of the surface.
     pub(super) fn enlarged(&self, mut best: Domain, seeds: &[u32], region: &mut Region) -> Domain {
         let mut grow = |best: &mut Domain, factor: DVec2| {
@@ -475,7 +486,52 @@ impl Grower<'_> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
+    use crate::analyse::cloud_normals::NormalSource;
+    use crate::analyse::cloud_surface::{Lines, cloud_surface};
+    use crate::analyse::planted::random;
+    use crate::model::cloud::Cloud;
+    use crate::model::polyline::nearest_on;
+
+    #[test]
+    fn splats_beside_lines_that_stray_from_the_faces_are_still_cut_along_them() {
+        const BOUND: f64 = 0.004;
+        // A floor and a wall below its side, along a line that is now above the floor and now below.
+        let place = |n: u64| {
+            let (a, b) = (0.25 + 0.25 * random(2 * n), 0.5 * random(2 * n + 1));
+            if n.is_multiple_of(2) { DVec3::new(a, b, 0.0) } else { DVec3::new(0.0, b, -a) }.as_vec3()
+        };
+        let cloud = Cloud { positions: (0..3000).map(place).collect(), ..Cloud::default() };
+        let at = |n: u32| {
+            let off = if n.is_multiple_of(2) { 0.6 * BOUND } else { -0.6 * BOUND };
+            DVec3::new(0.0, f64::from(n) / 40.0 - 0.5, off)
+        };
+        let line: Vec<DVec3> = (0..=40).map(at).collect();
+        let given = Lines::Given(std::slice::from_ref(&line));
+        let surface =
+            cloud_surface(&cloud, NormalSource::Estimate, given, Some(0.0), None, None).unwrap().surface;
+        let round = |splat: &Splat| Some(splat.clone());
+        let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &round);
+        let mut region = Region::new(surface.points.len());
+        let beside = (0..surface.pieces.len() as u32)
+            .filter(|&piece| surface.middle(piece).x < 0.02 && surface.middle(piece).y.abs() < 0.4)
+            .filter(|&piece| grower.grow(piece, &mut region).is_none());
+        let mut grown = 0;
+        for splat in beside.collect::<Vec<_>>().into_iter().filter_map(|piece| {
+            Some(grower.grow_beside_lines(piece, &mut region)?.splat).filter(|splat| !splat.clips.is_empty())
+        }) {
+            let cut = Cut { clips: &splat.clips, radii: splat.radii, curvature: splat.curvature };
+            let border = cut.border(&grower.budget.clip).into_iter().map(|on| splat.center + splat.axes * on);
+            for on in border.filter(|on| on.y.abs() < 0.45) {
+                let off = line.windows(2).map(|side| nearest_on(side[0], side[1], on).distance(on));
+                assert!(off.fold(f64::INFINITY, f64::min) <= BOUND, "{on} is off the line");
+            }
+            grown += 1;
+        }
+        assert!(grown > 10, "{grown} grown that otherwise are not");
+    }
 
     #[test]
     fn a_corner_that_a_slope_takes_away_from_the_border_is_not_reached() {
