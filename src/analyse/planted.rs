@@ -59,3 +59,15 @@ pub(crate) fn side_by_side<'a>(
 ) -> Sites<'a> {
     Sites { positions, normals, spacing, nearest, noise: 0.0 }
 }
+
+/// A place on a floor with a step up from a quarter of it, whose corner is the origin, and the normal of its face.
+pub fn on_step(n: u64) -> (DVec3, DVec3) {
+    let (a, b) = (0.5 * random(2 * n), 0.5 * random(2 * n + 1));
+    let height = 0.25 + 0.5 * b;
+    match n % 4 {
+        0 => (DVec3::new(a.abs(), 0.0, height), DVec3::Y),
+        1 => (DVec3::new(0.0, a.abs(), height), DVec3::X),
+        _ if a > 0.0 && b > 0.0 => (DVec3::new(a, b, 0.5), DVec3::Z),
+        _ => (DVec3::new(a, b, 0.0), DVec3::Z),
+    }
+}

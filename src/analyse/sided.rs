@@ -165,33 +165,22 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::analyse::planted::{normal, random};
+    use crate::analyse::planted::{normal, on_step, random};
 
     #[test]
     fn normals_beside_a_corner_are_of_one_face() {
-        // A floor with a step up from a quarter of it.
-        let place = |n: u64| {
-            let (a, b) = (0.5 * random(2 * n), 0.5 * random(2 * n + 1));
-            let height = 0.25 + 0.5 * b;
-            match n % 4 {
-                0 => (DVec3::new(a.abs(), 0.0, height), DVec3::Y),
-                1 => (DVec3::new(0.0, a.abs(), height), DVec3::X),
-                _ if a > 0.0 && b > 0.0 => (DVec3::new(a, b, 0.5), DVec3::Z),
-                _ => (DVec3::new(a, b, 0.0), DVec3::Z),
-            }
-        };
         let lines = DVec3::AXES.map(|axis| vec![DVec3::ZERO, 0.5 * axis]);
         let (mut wrong, mut beside) = (0, 0);
         for cloud in 0..20 {
-            let places: Vec<(DVec3, DVec3)> = (0..3000).map(|n| place(3000 * cloud + n)).collect();
+            let places: Vec<(DVec3, DVec3)> = (0..3000).map(|n| on_step(3000 * cloud + n)).collect();
             let positions = places.iter().map(|(at, _)| at.as_vec3()).collect();
             let cloud = Cloud { positions, ..Cloud::default() };
             let sided = Sided::of(&cloud, NormalSource::Auto, Lines::Given(&lines), Some(0.0)).unwrap();
             for ((at, face), &n) in places.iter().zip(&sided.points.place) {
                 if at.length() < 2.0 * f64::from(sided.spacing[n as usize]) {
                     beside += 1;
-                    // 10°
-                    wrong += u32::from(sided.normals.normals[n as usize].as_dvec3().dot(*face).abs() < 0.985);
+                    let normal = sided.normals.normals[n as usize].as_dvec3();
+                    wrong += u32::from(normal.dot(*face).abs() < libm::cos(10_f64.to_radians()));
                 }
             }
         }

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use crate::analyse::cloud_normals::NormalSource;
     use crate::analyse::cloud_surface::{Lines as Given, cloud_surface};
-    use crate::analyse::planted::random;
+    use crate::analyse::planted::{on_step, random};
     use crate::fit::clip::Clips;
     use crate::model::cloud::Cloud;
     use glam::{DVec3, Vec3};
@@ -218,20 +218,8 @@ mod tests {
 
     #[test]
     fn nothing_of_a_face_is_cut_away_at_a_corner_that_points_into_it() {
-        // A floor with a step up from a quarter of it.
-        let place = |n: u64| {
-            let (a, b) = (0.5 * random(2 * n), 0.5 * random(2 * n + 1));
-            let height = 0.25 + 0.5 * b;
-            match n % 4 {
-                0 => DVec3::new(a.abs(), 0.0, height),
-                1 => DVec3::new(0.0, a.abs(), height),
-                _ if a > 0.0 && b > 0.0 => DVec3::new(a, b, 0.5),
-                _ => DVec3::new(a, b, 0.0),
-            }
-            .as_vec3()
-        };
         let edges = [DVec3::X, DVec3::Y].map(|axis| vec![DVec3::ZERO, 0.5 * axis]);
-        let discs = discs((0..12_000).map(place).collect(), &edges);
+        let discs = discs((0..12_000).map(|n| on_step(n).0.as_vec3()).collect(), &edges);
         let floor: Vec<&(Vec3, Splat)> = discs.iter().filter(|(at, _)| at.z == 0.0).collect();
         let (mut cut, mut around) = (0, 0);
         for (at, splat) in floor.iter().filter(|(at, _)| at.truncate().abs().max_element() < 0.1) {

@@ -515,20 +515,22 @@ mod tests {
         let round = |splat: &Splat| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &round);
         let mut region = Region::new(surface.points.len());
-        let beside = (0..surface.pieces.len() as u32)
-            .filter(|&piece| surface.middle(piece).x < 0.02 && surface.middle(piece).y.abs() < 0.4)
-            .filter(|&piece| grower.grow(piece, &mut region).is_none());
+        let is_beside = |at: DVec3| at.x < 0.02 && at.y.abs() < 0.4;
         let mut grown = 0;
-        for splat in beside.collect::<Vec<_>>().into_iter().filter_map(|piece| {
-            Some(grower.grow_beside_lines(piece, &mut region)?.splat).filter(|splat| !splat.clips.is_empty())
-        }) {
+        for piece in (0..surface.pieces.len() as u32).filter(|&piece| is_beside(surface.middle(piece))) {
+            if grower.grow(piece, &mut region).is_some() {
+                continue;
+            }
+            let Some(Candidate { splat, .. }) = grower.grow_beside_lines(piece, &mut region) else {
+                continue;
+            };
+            grown += u32::from(!splat.clips.is_empty());
             let cut = Cut { clips: &splat.clips, radii: splat.radii, curvature: splat.curvature };
             let border = cut.border(&grower.budget.clip).into_iter().map(|on| splat.center + splat.axes * on);
             for on in border.filter(|on| on.y.abs() < 0.45) {
                 let off = line.windows(2).map(|side| nearest_on(side[0], side[1], on).distance(on));
                 assert!(off.fold(f64::INFINITY, f64::min) <= BOUND, "{on} is off the line");
             }
-            grown += 1;
         }
         assert!(grown > 10, "{grown} grown that otherwise are not");
     }
