@@ -80,15 +80,18 @@ impl<'a> CloudFit<'a> {
     ///
     /// An open disc reaches a margin farther than it stands for the surface, since so much is not known.
     /// What stands out past the cloud's border is seen as far as it stands out farther than that. Where
-    /// another sheet passes nearby, turned otherwise, the nearest fit of that counts too.
+    /// another sheet passes nearby, turned otherwise, its fits count too, up to the nearest over whose disc
+    /// the place lies.
     pub(super) fn distance(&self, place: DVec3) -> f64 {
         let near = self.nearest(place.as_vec3().to_array(), ASKED);
         let Some((&nearest, others)) = near.split_first() else { return f64::INFINITY };
         let Off { mut distance, over } = self.fit(nearest).off(place);
-        let other_sheet = others.iter().position(|&point| !self.agree(nearest, point));
-        let asked = if over { other_sheet.map_or(0..0, |at| at..at + 1) } else { 0..others.len() };
-        for &point in &others[asked] {
-            distance = distance.min(self.fit(point).off(place).distance);
+        for &point in others.iter().filter(|&&point| !over || !self.agree(nearest, point)) {
+            let off = self.fit(point).off(place);
+            distance = distance.min(off.distance);
+            if over && off.over {
+                break;
+            }
         }
         distance
     }
@@ -227,9 +230,25 @@ mod tests {
     use crate::analyse::cloud_surface::{Lines, cloud_discs};
     use crate::measure::planted;
     use crate::model::cloud::Cloud;
+    use crate::model::discs::Disc;
 
     fn discs(points: &[Vec3]) -> Discs {
         planted::discs(&Cloud { positions: points.to_vec(), ..Cloud::default() })
+    }
+
+    #[test]
+    fn beside_an_edge_the_other_face_counts_beyond_its_nearest_point() {
+        let floor = |n: u32| Vec3::new(0.1 * (n % 5) as f32, 0.1 * (n / 5) as f32 - 0.2, 0.0);
+        // The nearest of the wall stands for little of it.
+        let wall = [(0.0, 0.3, 0.02), (0.06, 0.35, 0.3), (-0.06, 0.36, 0.3), (0.0, 0.45, 0.3)];
+        let points: Vec<Vec3> =
+            (0..25).map(floor).chain(wall.map(|(y, z, _)| Vec3::new(0.0, y, z))).collect();
+        let disc = |normal: Vec3, margin: f32| Disc { normal, margin, ..Disc::default() };
+        let floor = (0..25).map(|_| disc(Vec3::Z, 0.1));
+        let discs = Discs::new(floor.chain(wall.map(|(_, _, margin)| disc(Vec3::X, margin))).collect(), &[]);
+        let fit = CloudFit::new(&points, &discs).unwrap();
+        let on_wall = fit.distance(DVec3::new(0.0, 0.02, 0.14));
+        assert!(on_wall < 1e-6, "{on_wall}");
     }
 
     #[test]
