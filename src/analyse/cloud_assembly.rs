@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::line_cut::{LineCut, LinePoint};
-use super::surface::{NONE, Rows, Spot, Surface, inverse};
+use super::surface::{Cells, NONE, Rows, Spot, Surface, inverse};
 use super::thin::Sheet;
 
 /// A cloud and what stands for what in it.
@@ -62,6 +62,7 @@ impl<'a> Assembly<'a> {
             neighbours: self.neighbours(joins),
             pieces: rows().flat_map(|row| self.owned.row(row).iter().map(move |_| [row; 3])).collect(),
             spots: rows().flat_map(|row| self.owned.row(row)).map(|&point| self.spot(point)).collect(),
+            cells: self.cells(),
             pieces_of: Rows::consecutive(&lengths.collect::<Vec<_>>()),
             margin: rows()
                 .into_par_iter()
@@ -93,6 +94,16 @@ impl<'a> Assembly<'a> {
     fn spot(&self, point: u32) -> Spot {
         let (position, joined) = (self.sheet.positions[point as usize], &self.sheet.joined[point as usize]);
         Spot { position, margin: joined.margin }
+    }
+
+    /// What lines bound of that for which spots stand.
+    fn cells(&self) -> Cells {
+        let all = self.sheet.cells;
+        let spots = (0..self.count()).flat_map(|row| self.owned.row(row));
+        Cells::new(spots.map(|point| {
+            let found = all.binary_search_by_key(point, |cell| cell.0);
+            found.map(|at| all[at].1.as_slice()).unwrap_or_default()
+        }))
     }
 
     /// A row's point, moved along its normal to the mean height of those it stands for: their noise

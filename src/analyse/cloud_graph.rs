@@ -5,18 +5,19 @@
 //! tangent plane, which holds the graph together (Yao 1982) however the points are strewn.
 //!
 //! A point's margin is the distance to the farthest corner of its Voronoi cell in its tangent
-//! plane: every place of the cell has this point within the margin. So the margins fill the
-//! surface wherever no empty disc is larger than `GAP` spacings; where one is, the surface
-//! has a hole.
+//! plane, as far as feature lines leave it to its sheet: every place of the cell has this point within
+//! the margin. So the margins fill the surface wherever no empty disc is larger than `GAP` spacings;
+//! where one is, the surface has a hole.
 
 use std::f64::consts::TAU;
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
+use super::cell::{Cell, Corners, Side};
 use super::nearest::{NEAREST, Nearest, listed};
 use super::surface::NONE;
-use crate::model::discs::Gap;
+use crate::model::discs::{End, Gap};
 
 /// Normals of joined points agree by at least this cosine (60°).
 const AGREE: f32 = 0.5;
@@ -86,37 +87,133 @@ impl Sites<'_> {
         near && na.dot(nb) >= AGREE && slope <= ALONG * length
     }
 
-    /// What each point is joined to, but for pairs that `cut` keeps apart.
+    /// What each point is joined to, as far as lines leave them on one sheet.
     #[must_use]
-    pub fn join(&self, cut: &(impl Fn(u32, u32) -> bool + Sync)) -> Vec<Joined> {
-        (0..self.positions.len() as u32).into_par_iter().map(|point| self.join_one(point, cut)).collect()
+    pub fn join(&self, parted: &impl Parted) -> Vec<Joined> {
+        let points = 0..self.positions.len() as u32;
+        points.into_par_iter().map(|point| Around::of(self, point, parted).joined()).collect()
     }
 
-    fn join_one(&self, point: u32, cut: &impl Fn(u32, u32) -> bool) -> Joined {
+    /// For each point whose sheet ends at a line nearby, in their order, the corners of what it stands for, model
+    /// units: of its cell, or where that is open of as much of it as lies within its margin.
+    #[must_use]
+    pub fn cells(&self, parted: &impl Parted) -> Vec<(u32, Vec<Vec3>)> {
+        let points = (0..self.positions.len() as u32).into_par_iter();
+        let cell = |point| Some((point, Around::of(self, point, parted).cell()?));
+        points.filter(|&point| parted.is_beside(point)).filter_map(cell).collect()
+    }
+}
+
+/// How feature lines part the sheets of a cloud.
+pub trait Parted: Sync {
+    /// Whether a point lies beside a line.
+    fn is_beside(&self, point: u32) -> bool;
+    /// Whether a line passes between two points.
+    fn parts(&self, a: u32, b: u32) -> bool;
+    /// Pieces of lines at which the sheet of a point ends within a distance, model units.
+    fn ends(&self, point: u32, reach: f64) -> Vec<End>;
+}
+
+/// No line parts anything.
+#[derive(Clone, Copy, Debug)]
+pub struct Whole;
+
+impl Parted for Whole {
+    fn is_beside(&self, _: u32) -> bool {
+        false
+    }
+
+    fn parts(&self, _: u32, _: u32) -> bool {
+        false
+    }
+
+    fn ends(&self, _: u32, _: f64) -> Vec<End> {
+        Vec::new()
+    }
+}
+
+/// A point and what is joined to it, in its tangent plane.
+struct Around<'a> {
+    sites: &'a Sites<'a>,
+    point: usize,
+    axes: [Vec3; 2],
+    sectors: [u32; SECTORS],
+    flat: [DVec2; NEAREST],
+    count: usize,
+    /// What ends its sheet.
+    sides: Vec<Side>,
+}
+
+impl<'a> Around<'a> {
+    fn of(sites: &'a Sites<'a>, point: u32, parted: &impl Parted) -> Self {
         let n = point as usize;
-        let (right, up) = self.normals[n].any_orthonormal_pair();
-        let mut sectors = [NONE; SECTORS];
-        let mut flat = [DVec2::ZERO; NEAREST];
-        let mut count = 0;
-        let others = listed(&self.nearest[n]);
-        for other in others.filter(|&other| self.are_joined(point, other) && !cut(point, other)) {
-            let way = self.positions[other as usize] - self.positions[n];
-            let uv = DVec2::new(f64::from(way.dot(right)), f64::from(way.dot(up)));
-            let slot = &mut sectors[sector(uv)];
+        let (right, up) = sites.normals[n].any_orthonormal_pair();
+        let (sectors, flat) = ([NONE; SECTORS], [DVec2::ZERO; NEAREST]);
+        let mut around =
+            Self { sites, point: n, axes: [right, up], sectors, flat, count: 0, sides: Vec::new() };
+        let others = listed(&sites.nearest[n]);
+        for other in others.filter(|&other| sites.are_joined(point, other) && !parted.parts(point, other)) {
+            let uv = around.flattened(sites.positions[other as usize] - sites.positions[n]);
+            let slot = &mut around.sectors[sector(uv)];
             // They come nearest first.
             if *slot == NONE {
                 *slot = other;
             }
-            flat[count] = uv;
-            count += 1;
+            around.flat[around.count] = uv;
+            around.count += 1;
         }
-        let spacing = f64::from(self.spacing[n]);
-        let Corners { farthest, open } = farthest_corner(&flat[..count], GAP * spacing);
-        let gap = widest_gap(&flat[..count]).map(|[middle, half]| Gap {
+        let side = |end: End| Side {
+            ends: end.ends.map(|end| around.flattened(end - sites.positions[n])),
+            inward: around.flattened(end.inward),
+        };
+        around.sides = parted.ends(point, around.reach()).into_iter().map(side).collect();
+        around
+    }
+
+    fn flattened(&self, way: Vec3) -> DVec2 {
+        let [right, up] = self.axes;
+        DVec2::new(f64::from(way.dot(right)), f64::from(way.dot(up)))
+    }
+
+    /// What lies as far belongs to a hole.
+    fn reach(&self) -> f64 {
+        GAP * f64::from(self.sites.spacing[self.point])
+    }
+
+    fn joined(&self) -> Joined {
+        let [right, up] = self.axes;
+        let (margin, open) = self.margin();
+        let gap = widest_gap(&self.flat[..self.count]).map(|[middle, half]| Gap {
             outward: libm::cos(middle) as f32 * right + libm::sin(middle) as f32 * up,
             cosine: libm::cos(half) as f32,
         });
-        Joined { sectors, margin: farthest.unwrap_or(spacing) as f32, open, gap }
+        Joined { sectors: self.sectors, margin: margin as f32, open, gap }
+    }
+
+    /// How far the point stands for the surface, and whether its cell goes on into a hole.
+    fn margin(&self) -> (f64, bool) {
+        let cell = self.cell_within(self.reach());
+        let Corners { farthest, open } =
+            if self.sides.is_empty() { cell.whole() } else { cell.within(&self.sides) };
+        (farthest.unwrap_or(f64::from(self.sites.spacing[self.point])), open)
+    }
+
+    fn cell_within(&self, reach: f64) -> Cell {
+        Cell::of(&self.flat[..self.count], reach)
+    }
+
+    /// The corners of what the point stands for, and the point, which may lie across the line; `None` where nothing
+    /// ends its sheet.
+    fn cell(&self) -> Option<Vec<Vec3>> {
+        if self.sides.is_empty() {
+            return None;
+        }
+        let [right, up] = self.axes;
+        let place = |uv: DVec2| self.sites.positions[self.point] + uv.x as f32 * right + uv.y as f32 * up;
+        let (margin, open) = self.margin();
+        let corners = self.cell_within(if open { margin } else { self.reach() }).reached(&self.sides);
+        let near = |corner: DVec2| if open { corner.clamp_length_max(margin) } else { corner };
+        Some(corners.into_iter().map(near).chain([DVec2::ZERO]).map(place).collect())
     }
 }
 
@@ -152,69 +249,6 @@ fn sector(uv: DVec2) -> usize {
     usize::from(uv.x < 0.0) + 2 * usize::from(uv.y < 0.0) + 4 * usize::from(steep)
 }
 
-/// Most corners a cell can have: a square cut by every neighbour.
-const CORNERS: usize = 4 + NEAREST;
-
-/// The corners of a cell, as far as they count.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corners {
-    /// Distance of the farthest from the cell's own point; `None` where none counts.
-    pub farthest: Option<f64>,
-    /// Whether some do not count: the cell goes on into a hole.
-    pub open: bool,
-}
-
-/// The corners of the Voronoi cell of the origin among `sites`; those farther than `reach` belong to holes
-/// and do not count.
-#[must_use]
-pub fn farthest_corner(sites: &[DVec2], reach: f64) -> Corners {
-    let (mut cell, mut cut) = (&mut [DVec2::ZERO; CORNERS], &mut [DVec2::ZERO; CORNERS]);
-    let mut count = 4;
-    for (corner, (x, y)) in cell.iter_mut().zip([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) {
-        *corner = DVec2::new(x, y) * reach;
-    }
-    let (mut farthest, mut beyond) = (2.0 * reach * reach, [0.0; CORNERS]);
-    for site in sites.iter().take(NEAREST) {
-        // A site at more than twice the distance of every corner cuts none of them off.
-        if site.length_squared() > 4.0 * farthest {
-            continue;
-        }
-        // Places nearer to the site lie beyond the bisector, on its far side.
-        for (beyond, corner) in beyond.iter_mut().zip(&cell[..count]) {
-            *beyond = corner.dot(*site) - 0.5 * site.length_squared();
-        }
-        if beyond[..count].iter().all(|beyond| *beyond <= 0.0) {
-            continue;
-        }
-        count = near_side(&cell[..count], &beyond, cut);
-        std::mem::swap(&mut cell, &mut cut);
-        farthest = cell[..count].iter().map(|corner| corner.length_squared()).fold(0.0, f64::max);
-    }
-    let corners = cell[..count].iter().map(|corner| corner.length());
-    // Corners of the square itself, or on its sides, lie at least `reach` away.
-    let near = |distance: &f64| *distance < reach * (1.0 - 1e-9);
-    let open = corners.clone().any(|distance| !near(&distance));
-    Corners { farthest: corners.filter(|distance| *distance > 0.0 && near(distance)).reduce(f64::max), open }
-}
-
-/// The part of a cell this side of a line, by how far its corners lie beyond it; how many corners that has.
-fn near_side(cell: &[DVec2], beyond: &[f64], part: &mut [DVec2; CORNERS]) -> usize {
-    let mut kept = 0;
-    for n in 0..cell.len() {
-        let next = if n + 1 < cell.len() { n + 1 } else { 0 };
-        let (fa, fb) = (beyond[n], beyond[next]);
-        if fa <= 0.0 && kept < CORNERS {
-            part[kept] = cell[n];
-            kept += 1;
-        }
-        if (fa < 0.0) != (fb < 0.0) && kept < CORNERS {
-            part[kept] = cell[n].lerp(cell[next], fa / (fa - fb));
-            kept += 1;
-        }
-    }
-    kept
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -222,30 +256,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn corners_of_planted_cells() {
-        let square: Vec<DVec2> = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1)]
-            .map(|(x, y)| DVec2::new(x.into(), y.into()))
-            .to_vec();
-        let corner = |sites: &[DVec2]| farthest_corner(sites, 2.5).farthest;
-        let open = |sites: &[DVec2]| farthest_corner(sites, 2.5).open;
-        assert!((corner(&square).unwrap() - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-12);
+    fn wedges_without_sites_are_told() {
         let hexagon: Vec<DVec2> =
             (0..6).map(|n| DVec2::from_angle(f64::from(n) * std::f64::consts::FRAC_PI_3)).collect();
-        assert!((corner(&hexagon).unwrap() - 1.0 / 3.0_f64.sqrt()).abs() < 1e-12);
-        // At the border of a lattice only the corners on the inner side count.
-        assert!(
-            (corner(&[DVec2::X, DVec2::Y, -DVec2::X]).unwrap() - std::f64::consts::FRAC_1_SQRT_2).abs()
-                < 1e-12
-        );
-        assert_eq!(corner(&[DVec2::X, -DVec2::X]), None, "a line of points bounds no cell");
-        assert_eq!(corner(&[]), None);
         let half_turn = [DVec2::X, DVec2::Y, DVec2::NEG_X];
         let gap = widest_gap(&half_turn).map(|gap| gap.map(f64::to_degrees));
         assert!(
             gap.is_some_and(|[middle, half]| (middle - 270.0).abs() < 1e-9 && (half - 90.0).abs() < 1e-9)
         );
         assert_eq!((widest_gap(&hexagon), widest_gap(&[])), (None, Some([0.5 * TAU; 2])));
-        assert!(!open(&square) && !open(&hexagon) && open(&hexagon[..3]) && open(&[]));
     }
 
     #[test]
@@ -278,7 +297,7 @@ mod tests {
             nearest: &nearest,
             noise: 0.0,
         };
-        let joined = sites.join(&|_, _| false);
+        let joined = sites.join(&Whole);
         for n in 0..4000 {
             let place = 0.9 * Vec3::new(value(90_000 + 2 * n), value(90_001 + 2 * n), 0.0);
             let covered = positions.iter().zip(&joined).any(|(p, j)| p.distance(place) <= j.margin * 1.0001);

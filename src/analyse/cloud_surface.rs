@@ -3,11 +3,11 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::cloud_assembly::Assembly;
-use super::cloud_graph::{Joined, Sites};
+use super::cloud_graph::{Joined, Parted, Sites, Whole};
 use super::cloud_normals::{NormalSource, Normals};
 use super::distinct::Distinct;
 use super::given_lines::Matched;
@@ -62,6 +62,8 @@ struct Laid {
     ends: Vec<(u32, End)>,
     on_line: Vec<bool>,
     outlier: Vec<bool>,
+    /// Corners of what points beside lines stand for: see [`Sites::cells`].
+    cells: Vec<(u32, Vec<Vec3>)>,
     /// What became of the lines that part nothing.
     cleaned: Cleaned,
 }
@@ -89,13 +91,14 @@ pub fn cloud_surface(
     let laid = Laid::of(cloud, source, lines, noise)?;
     let (left_out, open_places) = (laid.left_out(), laid.open_places());
     let discs = told.filter(|told| told.contains(&laid.median_margin())).map(|_| laid.discs());
-    let Laid { points, normals, cut, joined, joins, on_line, outlier, cleaned, .. } = laid;
+    let Laid { points, normals, cut, joined, joins, on_line, outlier, cells, cleaned, .. } = laid;
     let sheet = Sheet {
         positions: &points.positions,
         normals: &normals.normals,
         joined: &joined,
         outlier: &outlier,
         on_line: &on_line,
+        cells: &cells,
     };
     let owner = owners(&sheet, reach);
     let surface = Assembly::new(&sheet, &points.colors, &owner, cut.as_ref()).surface(joins);
@@ -126,7 +129,9 @@ impl Laid {
     fn of(cloud: &Cloud, source: NormalSource, lines: Lines<'_>, noise: Option<f64>) -> Result<Self> {
         let sided = Sided::of(cloud, source, lines, noise)?;
         let (sites, cut) = (sided.sites(), sided.cut.as_ref());
-        let joined = joined(&sites, cut);
+        let lined = cut.map(|cut| Lined { sites: &sites, cut });
+        let joined = lined.as_ref().map_or_else(|| sites.join(&Whole), |lined| sites.join(lined));
+        let cells = lined.as_ref().map(|lined| sites.cells(lined)).unwrap_or_default();
         let joins = cut.map(|cut| cut.joins(&sites)).unwrap_or_default();
         let ends = cut.map(|cut| cut.ends(&sites, &joined)).unwrap_or_default();
         let mut on_line = vec![false; joined.len()];
@@ -143,7 +148,7 @@ impl Laid {
         let outlier = outliers(&strewn);
         // Their neighbours are no longer needed.
         let Sided { points, normals, cut, cleaned, .. } = sided;
-        Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, cleaned })
+        Ok(Self { points, normals, cut, joined, joins, ends, on_line, outlier, cells, cleaned })
     }
 
     /// Half of the points have no wider margins, model units; 0 for no points.
@@ -202,14 +207,24 @@ impl Laid {
 /// noise rather than the surface.
 const FARTHER: f32 = 2.0;
 
-/// What each point is joined to, on its own side of the lines.
-fn joined(sites: &Sites<'_>, cut: Option<&LineCut>) -> Vec<Joined> {
-    let Some(cut) = cut else { return sites.join(&|_, _| false) };
-    let mut joined = sites.join(&|a, b| cut.parts(sites, a, b));
-    for (point, joined) in (0_u32..).zip(&mut joined) {
-        joined.margin = joined.margin.max(cut.reach(sites, point));
+/// Lines as they part the points of a cloud.
+struct Lined<'a> {
+    sites: &'a Sites<'a>,
+    cut: &'a LineCut,
+}
+
+impl Parted for Lined<'_> {
+    fn is_beside(&self, point: u32) -> bool {
+        self.cut.is_beside(point)
     }
-    joined
+
+    fn parts(&self, a: u32, b: u32) -> bool {
+        self.cut.parts(self.sites, a, b)
+    }
+
+    fn ends(&self, point: u32, reach: f64) -> Vec<End> {
+        self.cut.ends_within(self.sites, point, reach)
+    }
 }
 
 fn matched(lines: &[Vec<DVec3>], edges: usize, cut_length: f64, cleaned: Cleaned) -> Matched {

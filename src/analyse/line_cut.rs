@@ -70,6 +70,8 @@ struct Border {
 #[derive(Clone, Debug)]
 pub struct LineCut {
     network: Network,
+    /// Its segments.
+    grid: SegmentGrid,
     sheets: Sheets,
     borders: Vec<Border>,
     /// For each segment, where its borders begin among all.
@@ -107,7 +109,9 @@ impl LineCut {
                 borders.push(Border { segment, sheet, ends, points: [NONE; 2] });
             }
         }
-        let mut cut = Self { network, sheets, borders, first_border, points: Vec::new() };
+        let segments = (0..network.segments.len() as u32).map(|segment| network.ends(segment));
+        let grid = SegmentGrid::new(segments.collect());
+        let mut cut = Self { network, grid, sheets, borders, first_border, points: Vec::new() };
         cut.link();
         cut
     }
@@ -343,17 +347,6 @@ impl LineCut {
         self.borders.iter().map(|border| self.network.is_carried(border.segment))
     }
 
-    /// How far a point beside a line must reach to fill the surface up to it, model units; 0
-    /// for other points.
-    #[must_use]
-    pub fn reach(&self, sites: &Sites, point: u32) -> f32 {
-        let here = sites.positions[point as usize];
-        self.border_beside(sites, point).map_or(0.0, |border| {
-            let ends = border.ends.map(|node| self.network.nodes[node as usize].distance(here));
-            ends[0].max(ends[1])
-        })
-    }
-
     /// What ends the discs of points beside the lines: each point with a piece of line, in the order of the
     /// points. `joined` tells how far these stand for the surface.
     ///
@@ -361,17 +354,22 @@ impl LineCut {
     /// sheet's, and whose plane the segment is near.
     #[must_use]
     pub fn ends(&self, sites: &Sites, joined: &[Joined]) -> Vec<(u32, End)> {
-        let segments = (0..self.network.segments.len() as u32).map(|segment| self.network.ends(segment));
-        let grid = SegmentGrid::new(segments.collect());
         let points = (0..sites.positions.len() as u32).into_par_iter();
-        let beside = points.filter(|&point| self.sheets.beside[point as usize].is_some());
-        let ends = beside.flat_map_iter(|point| {
-            let reach =
-                f64::from(sites.spacing[point as usize].mul_add(SEEN, 2.0 * joined[point as usize].margin));
-            let near = grid.within(sites.positions[point as usize].as_dvec3(), reach);
-            near.into_iter().filter_map(move |segment| Some((point, self.end(sites, point, segment)?)))
+        let ends = points.flat_map_iter(|point| {
+            let reach = sites.spacing[point as usize].mul_add(SEEN, 2.0 * joined[point as usize].margin);
+            self.ends_within(sites, point, f64::from(reach)).into_iter().map(move |end| (point, end))
         });
         ends.collect()
+    }
+
+    /// What ends the disc of a point within a distance from it, model units.
+    #[must_use]
+    pub fn ends_within(&self, sites: &Sites, point: u32, reach: f64) -> Vec<End> {
+        if !self.is_beside(point) {
+            return Vec::new();
+        }
+        let near = self.grid.within(sites.positions[point as usize].as_dvec3(), reach);
+        near.into_iter().filter_map(|segment| self.end(sites, point, segment)).collect()
     }
 
     /// What a segment ends the disc of a point with, if it does.

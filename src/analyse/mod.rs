@@ -7,6 +7,7 @@ mod back_to_back;
 mod bends;
 mod blocks;
 pub mod canonical;
+mod cell;
 pub mod chains;
 mod cloud_assembly;
 pub mod cloud_creases;

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::edges::{Edges, face_normals};
 use super::sets::Sets;
-use super::surface::{NONE, Rows, Surface, inverse};
+use super::surface::{Cells, NONE, Rows, Surface, inverse};
 use super::weld::Welded;
 
 /// The surface of a mesh, cut along marked edges, borders and edges where the faces do not
@@ -70,6 +70,7 @@ fn assemble(welded: &Welded, point_of: &[u32], vertex_of: &[u32], border_next: V
         neighbours: Rows::from_pairs(vertex_of.len(), neighbours),
         pieces_of: Rows::from_pairs(vertex_of.len(), pieces_of),
         spots: Vec::new(),
+        cells: Cells::default(),
         pieces,
         margin: vec![0.0; vertex_of.len()],
         border_prev: inverse(&border_next),

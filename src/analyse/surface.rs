@@ -128,6 +128,38 @@ pub struct Spot {
     pub margin: f32,
 }
 
+/// Corners of what spots of a cloud stand for, where feature lines bound it; none of other spots, which stand for the
+/// disc of their margin.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cells {
+    /// Where those of each spot begin among all, and the last's end; empty where no spot has any.
+    starts: Vec<u32>,
+    corners: Vec<Vec3>,
+}
+
+impl Cells {
+    /// The cells of all spots, in their order.
+    #[must_use]
+    pub fn new<'a>(cells: impl Iterator<Item = &'a [Vec3]>) -> Self {
+        let (mut starts, mut corners) = (vec![0], Vec::new());
+        for cell in cells {
+            corners.extend_from_slice(cell);
+            starts.push(corners.len() as u32);
+        }
+        if corners.is_empty() { Self::default() } else { Self { starts, corners } }
+    }
+
+    /// The corners of what a spot stands for, model units.
+    #[must_use]
+    pub fn of(&self, spot: u32) -> &[Vec3] {
+        let spot = spot as usize;
+        match self.starts.get(spot..spot + 2) {
+            Some(&[from, to]) => &self.corners[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+}
+
 /// A sampled surface, cut along its feature lines.
 ///
 /// A point on a feature line is there once for each side, so that whatever walks along
@@ -149,6 +181,8 @@ pub struct Surface {
     pub pieces: Vec<[u32; 3]>,
     /// For each piece of a cloud what it is; empty for a mesh.
     pub spots: Vec<Spot>,
+    /// For each spot beside a feature line, what it stands for.
+    pub cells: Cells,
     /// For each point, the pieces it is a corner of.
     pub pieces_of: Rows,
     /// For each point of a cloud, how far it stands for the surface around it. Zero for a mesh.

@@ -51,6 +51,8 @@ pub struct Sheet<'a> {
     pub outlier: &'a [bool],
     /// Which are joined to a feature line.
     pub on_line: &'a [bool],
+    /// Corners of what points stand for, where lines bound it, in the order of the points.
+    pub cells: &'a [(u32, Vec<Vec3>)],
 }
 
 /// For each point the one that stands for it, [`NONE`] for an outlier; all for themselves where

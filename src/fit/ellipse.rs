@@ -1,5 +1,7 @@
 //! Where lines meet the border of a splat's ellipse.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::DVec2;
 
 /// The part of a polyline inside an ellipse, from border to border.
@@ -81,6 +83,41 @@ pub fn runs(line: &[DVec2], closed: bool, radii: DVec2) -> Option<Vec<Run>> {
         }
     }
     Some(found)
+}
+
+/// Ways in which a box around places is laid: that of a strip is wider than need be by at most a sixtieth of its length.
+const TURNS: u32 = 48;
+
+/// No ellipse around places is more slender than this: those on a line have no width.
+const SLENDEREST: f64 = 0.05;
+
+/// The angle from `u` to the first axis of the box around places that has the least area.
+#[must_use]
+pub fn least_turn(places: &[DVec2]) -> f64 {
+    let turns = (0..TURNS).map(|n| f64::from(n) / f64::from(TURNS) * FRAC_PI_2);
+    let area = |turn: f64| {
+        let back = DVec2::from_angle(-turn);
+        let [low, high] = bounds(places.iter().map(|&place| back.rotate(place)));
+        (high - low).element_product()
+    };
+    let areas = turns.map(|turn| (area(turn), turn));
+    areas.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, turn)| turn)
+}
+
+/// The centre and the radii of an ellipse along the axes around places, as slender as their box.
+#[must_use]
+pub fn around(places: &[DVec2]) -> (DVec2, DVec2) {
+    let [low, high] = bounds(places.iter().copied());
+    let (center, half) = (0.5 * (low + high), (0.5 * (high - low)).max(DVec2::splat(f64::MIN_POSITIVE)));
+    let half = half.max(DVec2::splat(SLENDEREST * half.max_element()));
+    let scale = places.iter().map(|&uv| ((uv - center) / half).length()).fold(0.0, f64::max);
+    (center, scale * half)
+}
+
+/// The lowest and the highest corner of the box around places.
+fn bounds(places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
+    let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    places.fold(none, |[low, high], uv| [low.min(uv), high.max(uv)])
 }
 
 /// Steiner's ellipse, the least through three points, whose mean is its centre: the angle from

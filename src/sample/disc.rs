@@ -1,8 +1,9 @@
 //! The disc of last resort around one point of a cloud, cut along the lines that it reaches.
 //!
-//! It reaches as far as its point stands for the surface, which beside a line is too far across. Seen from above it is
-//! cut along curves that follow the lines, though these may rise from the disc. Where none do, chords along some of the
-//! lines may, as far as the surface keeps to one side of them, and else one beside them, as far across as it goes.
+//! It reaches as far as its point stands for the surface, beside a line as an ellipse around that, which goes somewhat
+//! too far across. Seen from above it is cut along curves that follow the lines, though these may rise from the disc.
+//! Where none do, chords along some of the lines may, as far as the surface keeps to one side of them, and else one
+//! beside them, as far across as it goes.
 
 use glam::DVec2;
 
@@ -10,6 +11,7 @@ use super::grow::{Grower, MOST_CLIPS};
 use super::outline::{Outline, border_sides, holds_an_end, outlines};
 use super::region::{Member, Region};
 use crate::fit::clip::{self, Care};
+use crate::fit::ellipse::crossings;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::polyline::nearest_on;
@@ -27,10 +29,10 @@ pub fn cut(grower: &Grower, disc: Splat, piece: u32, region: &mut Region) -> Spl
     if !region.gather(grower.surface, &pose, disc.radii, &seeds) {
         return disc;
     }
-    let lines = Lines { grower, pose, radii: disc.radii, region };
+    let place = disc.to_local(grower.surface.middle(piece)).truncate();
+    let lines = Lines { grower, pose, radii: disc.radii, place, region };
     let clips = lines.curves().unwrap_or_else(|| lines.chords());
     let splat = Splat { clips, ..disc.clone() };
-    let place = splat.to_local(grower.surface.middle(piece)).truncate();
     let keeps = |stored: Splat| !stored.clips.iter().any(|clip| clip.cuts(place, stored.radii));
     if (grower.round)(&splat).is_some_and(keeps) { splat } else { disc }
 }
@@ -40,6 +42,8 @@ struct Lines<'a> {
     grower: &'a Grower<'a>,
     pose: Pose,
     radii: DVec2,
+    /// Where its point lies.
+    place: DVec2,
     region: &'a Region,
 }
 
@@ -86,12 +90,19 @@ impl Lines<'_> {
         let ends = border_sides(self.grower.surface, self.region).into_iter();
         let ends = ends.filter(|&(from, _)| !self.grower.surface.is_carried(from));
         let sides = ends.map(|(from, to)| [flat(from), flat(to)]);
-        let off =
-            |[a, b]: [DVec2; 2]| nearest_on(a.extend(0.0), b.extend(0.0), DVec2::ZERO.extend(0.0)).length();
+        let place = self.place.extend(0.0);
+        let off = |[a, b]: [DVec2; 2]| nearest_on(a.extend(0.0), b.extend(0.0), place).distance(place);
         let mut near: Vec<(f64, [DVec2; 2])> = sides.map(|side| (off(side), side)).collect();
-        near.retain(|(off, _)| off + self.grower.budget.clip.edge < self.radii.min_element());
+        near.retain(|&(_, side)| self.is_crossed(side));
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         near.into_iter().map(|(_, side)| side).collect()
+    }
+
+    /// Whether a side passes through it, farther inside than cuts may lie off.
+    fn is_crossed(&self, [a, b]: [DVec2; 2]) -> bool {
+        let inner = self.radii - self.grower.budget.clip.edge;
+        let within = || crossings(a, b, inner).is_some_and(|(enter, leave)| enter < 1.0 && leave > 0.0);
+        inner.min_element() > 0.0 && within()
     }
 
     /// A place just across a side.
@@ -119,7 +130,7 @@ impl Lines<'_> {
         let beyond = |member: &Member| (member.local.truncate() - from).dot(out);
         let farthest = self.region.members.iter().map(beyond).fold(0.0, f64::max);
         let moved = side.map(|end| end + farthest * out);
-        let stands_out = self.radii.min_element() - moved[0].dot(out);
+        let stands_out = (self.radii * out).length() - moved[0].dot(out);
         // Less than a rim may stand out by is not worth a cut.
         if stands_out > self.grower.budget.rim { Some(self.chord(moved)?.0) } else { None }
     }
@@ -214,6 +225,34 @@ mod tests {
             }
         }
         assert!(uncut > 4.0 && cut < 1.0, "{uncut} bounds into the hole, cut {cut}");
+    }
+
+    #[test]
+    fn beside_an_edge_discs_are_as_slender_as_what_their_points_stand_for_and_fill_it() {
+        // On a floor and a wall that meet along y points lie three times as far apart along it as across.
+        let (across, along) = (0.004_f32, 0.012_f32);
+        let place = |n: u16| {
+            let (row, off) = (f32::from(n / 2 % 50) - 25.0, across * (f32::from(n / 100) + 0.5));
+            let y = along * row;
+            if n.is_multiple_of(2) { Vec3::new(-off, y, 0.0) } else { Vec3::new(0.0, y, -off) }
+        };
+        let edge = (-50..=50).map(|n| DVec3::new(0.0, 0.006 * f64::from(n), 0.0)).collect();
+        let discs = discs((0..4000).map(place).collect(), &[edge]);
+        let is_beside = |at: Vec3| at.z == 0.0 && at.x > -across && at.y.abs() < 0.2;
+        let beside: Vec<&Splat> =
+            discs.iter().filter(|(at, _)| is_beside(*at)).map(|(_, splat)| splat).collect();
+        for splat in &beside {
+            assert!(splat.radii.min_element() < 0.7 * splat.radii.max_element(), "{}", splat.radii);
+        }
+        for n in 0..2000 {
+            let (x, y) = (-f64::from(across) * random(2 * n).abs(), 0.15 * random(2 * n + 1));
+            let over = |splat: &&Splat| {
+                let uv = splat.to_local(DVec3::new(x, y, 0.0)).truncate();
+                splat.ellipse(uv) <= 1.0 && !is_cut(splat, uv)
+            };
+            assert!(beside.iter().any(over), "{x} {y}");
+        }
+        assert!(beside.len() > 30, "{}", beside.len());
     }
 
     #[test]

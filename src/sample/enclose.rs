@@ -1,13 +1,12 @@
 //! A splat laid out for a given set of pieces.
 
-use std::f64::consts::FRAC_PI_2;
-
 use glam::{DMat3, DVec2, DVec3};
 
 use super::grow::{Domain, Grower};
 use super::region::Region;
 use super::settle::{Candidate, settle};
 use crate::analyse::surface::Surface;
+use crate::fit::ellipse::{around, least_turn};
 use crate::fit::pose::{Axes, Pose};
 
 /// An ellipse around places goes on by this factor beyond the farthest, so that the turn and the
@@ -18,14 +17,8 @@ const OUTSET: f64 = 1.02;
 /// move by more than its width.
 const WIDER: [f64; 3] = [OUTSET, 1.1, 1.3];
 
-/// No ellipse around places is more slender than this: those on a line have no width.
-const SLENDEREST: f64 = 0.05;
-
 /// Times an ellipse is laid out anew in the frame of the quadric found over the last one.
 const ROUNDS: usize = 2;
-
-/// Ways in which a box around places is laid: that of a strip is wider than need be by at most a sixtieth of its length.
-const TURNS: u32 = 48;
 
 /// Pieces that one splat is to cover.
 pub(super) struct Need {
@@ -47,9 +40,12 @@ impl Need {
         let mut corners: Vec<u32> = pieces.iter().flat_map(|&piece| surface.pieces[piece as usize]).collect();
         corners.sort_unstable();
         corners.dedup();
-        let places: Vec<DVec3> = corners.into_iter().map(|corner| surface.point(corner)).collect();
+        let cells = || pieces.iter().map(|&piece| surface.cells.of(piece));
+        let places = corners.into_iter().map(|corner| surface.point(corner));
+        let places: Vec<DVec3> = places.chain(cells().flatten().map(|corner| corner.as_dvec3())).collect();
         let middle = places.iter().sum::<DVec3>() / places.len() as f64;
-        let margin = pieces.iter().map(|&piece| surface.piece_margin(piece)).fold(0.0, f64::max);
+        let all_around = pieces.iter().zip(cells()).filter(|(_, cell)| cell.is_empty());
+        let margin = all_around.map(|(&piece, _)| surface.piece_margin(piece)).fold(0.0, f64::max);
         let reach = places.iter().map(|place| place.distance(middle)).fold(0.0, f64::max) + margin;
         let pose = Pose { center: middle, axes };
         (!pieces.is_empty()).then_some(Self { pieces, places, margin, pose, reach })
@@ -77,24 +73,12 @@ impl Need {
 
     /// The frame, turned about its normal so that the box around all places is least.
     fn boxed(&self) -> Pose {
-        let turned = (0..TURNS).map(|n| self.pose.turned(f64::from(n) / f64::from(TURNS) * FRAC_PI_2));
-        let area = |pose: &Pose| {
-            let [low, high] = self.around(pose);
-            (high - low).element_product()
-        };
-        let areas = turned.map(|pose| (area(&pose), pose));
-        areas.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(self.pose, |(_, pose)| pose)
+        self.pose.turned(least_turn(&self.flat(&self.pose)))
     }
 
     /// Its places in the plane of a frame.
-    fn flat(&self, pose: &Pose) -> impl Iterator<Item = DVec2> {
-        self.places.iter().map(|&place| pose.to_local(place).truncate())
-    }
-
-    /// The lowest and the highest corner of the box around its places, along the axes of a frame.
-    fn around(&self, pose: &Pose) -> [DVec2; 2] {
-        let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-        self.flat(pose).fold(none, |[low, high], uv| [low.min(uv), high.max(uv)])
+    fn flat(&self, pose: &Pose) -> Vec<DVec2> {
+        self.places.iter().map(|&place| pose.to_local(place).truncate()).collect()
     }
 
     /// The piece nearest to the middle.
@@ -163,12 +147,8 @@ impl Layout<'_> {
 
     /// An ellipse along a frame's axes around all places, and the frame moved to its centre.
     fn ellipse(&self, pose: &Pose, outset: f64) -> (Pose, DVec2) {
-        let need = self.need;
-        let [low, high] = need.around(pose);
-        let (center, half) = (0.5 * (low + high), (0.5 * (high - low)).max(DVec2::splat(f64::MIN_POSITIVE)));
-        let half = half.max(DVec2::splat(SLENDEREST * half.max_element()));
-        let scale = need.flat(pose).map(|uv| ((uv - center) / half).length()).fold(0.0, f64::max);
+        let (center, radii) = around(&self.need.flat(pose));
         let moved = Pose { center: pose.center + pose.axes * center.extend(0.0), ..*pose };
-        (moved, outset * scale * half + need.margin)
+        (moved, outset * radii + self.need.margin)
     }
 }

@@ -25,6 +25,7 @@ pub mod scout;
 mod seal;
 mod set_cover;
 pub mod settle;
+mod shaped;
 mod starts;
 pub mod thrift;
 mod tighten;

@@ -13,6 +13,7 @@ use super::grow::Grower;
 use super::outline::border_sides;
 use super::region::{Member, Region};
 use super::settle::{Candidate, rounded};
+use super::shaped::Shaped;
 use crate::fit::clip::{self, Care};
 use crate::fit::ellipse::{circumellipse, holds};
 use crate::fit::pose::Pose;
@@ -21,8 +22,8 @@ use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
 use crate::model::triangle::to_triangle;
 
-/// The splat over one piece: a triangle cut out of a plane, or the disc of a single point, cut as
-/// [`super::disc`] tells.
+/// The splat over one piece: a triangle cut out of a plane, or the disc of a single point or the ellipse around what
+/// one beside a line stands for, cut as [`super::disc`] tells.
 ///
 /// A side is cut along where the surface ends or folds away behind it: elsewhere the ellipse may go
 /// on over the neighbours. `None` if it cannot be stored: too small beside the budget, or too large.
@@ -35,16 +36,17 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     let mean: DVec3 = corners.iter().map(|&corner| surface.normal(corner)).sum();
     let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or(mean);
     let pose = Pose::at(middle, normal);
-    let margin = surface.piece_margin(piece);
     // A point of a cloud may be stood for by another, which its disc need not reach.
     let is_spot = corners[0] == corners[1];
-    let (theta, radii) = if is_spot {
-        (0.0, DVec2::ZERO)
+    let (pose, radii) = if let Some(Shaped { pose, radii }) = Shaped::around(surface.cells.of(piece), &pose) {
+        (pose, radii)
+    } else if is_spot {
+        (pose, DVec2::splat(surface.piece_margin(piece)))
     } else {
-        circumellipse(points.map(|point| pose.to_local(point).truncate()))
+        let (theta, radii) = circumellipse(points.map(|point| pose.to_local(point).truncate()));
+        (pose.turned(theta), radii)
     };
-    let pose = pose.turned(theta);
-    let padded = |share: f64| rounded(grower, &pose, radii + margin + share * budget.pad, DVec2::ZERO);
+    let padded = |share: f64| rounded(grower, &pose, radii + share * budget.pad, DVec2::ZERO);
     let mut splat = padded(1.0)?;
     if !is_spot {
         let triangle = |splat: &Splat| Triangle::below(splat, grower, corners);

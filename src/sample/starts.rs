@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::grow::Grower;
+use super::shaped::Shaped;
 use crate::fit::ellipse::circumellipse;
 use crate::fit::pose::Pose;
 
@@ -34,6 +35,8 @@ pub(super) struct Starts {
     turn: f64,
     /// The radii of that ellipse.
     radii: DVec2,
+    /// What a point beside a line stands for.
+    cell: Option<Shaped>,
     /// No radius is less.
     floor: f64,
     /// The budget for fits.
@@ -47,18 +50,22 @@ impl Starts {
         let normal: DVec3 = corners.iter().map(|&corner| surface.normal(corner)).sum();
         let pose = Pose::at(surface.middle(piece), normal);
         let flat = corners.map(|corner| pose.to_local(surface.point(corner)).truncate());
+        let cell = Shaped::around(surface.cells.of(piece), &pose);
         let reach = flat.iter().map(|uv| uv.length()).fold(0.0, f64::max);
         let (turn, radii) = circumellipse(flat);
         let fit = grower.budget.fit;
         let floor = (LEAST_MARGINS * surface.piece_margin(piece)).max(LEAST_SHARE * fit);
-        Self { pose, reach, turn, radii, floor, fit }
+        Self { pose, reach, turn, radii, cell, floor, fit }
     }
 
     /// The least radii worth trying: first of a disc, then, but for a lone point, of an ellipse as slender as the piece
-    /// is. Beside a fold the disc may be too wide.
+    /// is, or as what a point beside a line stands for. Beside a fold the disc may be too wide.
     pub(super) fn least(&self) -> impl Iterator<Item = (Pose, DVec2)> + use<> {
         let slender = self.is_extended().then(|| self.slender());
-        std::iter::once((self.pose, self.outset(DVec2::splat(self.reach)))).chain(slender)
+        let least = LEAST_SHARE * self.fit;
+        let cell =
+            self.cell.as_ref().map(|cell| (cell.pose, (LEAST_MARGINS * cell.radii).max(DVec2::splat(least))));
+        std::iter::once((self.pose, self.outset(DVec2::splat(self.reach)))).chain(cell).chain(slender)
     }
 
     /// Ellipses along a piece that are broader than it.
