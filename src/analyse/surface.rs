@@ -124,7 +124,7 @@ pub struct Spot {
     /// Where it is, model units.
     pub position: Vec3,
     /// How far inside a splat it must lie to count as covered, model units: as far as it
-    /// stands for the surface around it.
+    /// stands for the surface around it. Beside a feature line its cell tells more: [`Cells`].
     pub margin: f32,
 }
 

@@ -96,7 +96,8 @@ const SLENDEREST: f64 = 0.05;
 pub fn least_turn(places: &[DVec2]) -> f64 {
     let turns = (0..TURNS).map(|n| f64::from(n) / f64::from(TURNS) * FRAC_PI_2);
     let area = |turn: f64| {
-        let back = DVec2::from_angle(-turn);
+        let (sin, cos) = libm::sincos(turn);
+        let back = DVec2::new(cos, -sin);
         let [low, high] = bounds(places.iter().map(|&place| back.rotate(place)));
         (high - low).element_product()
     };
@@ -155,6 +156,21 @@ mod tests {
             }
         }
         assert!(runs(&line[1..], false, radii).is_none(), "begins inside");
+    }
+
+    #[test]
+    fn around_a_strip_that_lies_askew_an_ellipse_is_as_slender() {
+        let back = DVec2::from_angle(0.3);
+        let strip =
+            [(2.0, 0.1), (-2.0, 0.1), (-2.0, -0.1), (2.0, -0.1)].map(|place| back.rotate(place.into()));
+        let turn = least_turn(&strip);
+        let turned = strip.map(|place| DVec2::from_angle(-turn).rotate(place));
+        let (center, radii) = around(&turned);
+        assert!(
+            center.length() < 1e-9 && radii.min_element() < 0.1 * radii.max_element(),
+            "{center} {radii}"
+        );
+        assert!(turned.iter().all(|&place| holds(place - center, radii)));
     }
 
     #[test]

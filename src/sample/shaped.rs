@@ -5,7 +5,7 @@ use glam::{DVec2, Vec3};
 use crate::fit::ellipse::{around, least_turn};
 use crate::fit::pose::Pose;
 
-/// An ellipse.
+/// An ellipse: its frame, at its centre, and its radii there.
 pub(super) struct Shaped {
     pub(super) pose: Pose,
     pub(super) radii: DVec2,
