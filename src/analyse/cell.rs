@@ -88,6 +88,13 @@ impl Cell {
         self.counted(self.reached(sides).iter().map(|corner| corner.length()))
     }
 
+    /// Whether sides pass between the origin and some of the sites.
+    #[must_use]
+    pub fn parts(&self, sides: &[Side], sites: &[DVec2]) -> bool {
+        let origin = self.inside(sides);
+        sides.iter().any(|side| sites.iter().any(|&site| cross([origin, site], side.ends)))
+    }
+
     /// The corners of the part of it around the origin that some sides leave.
     #[must_use]
     pub fn reached(&self, sides: &[Side]) -> Vec<DVec2> {

@@ -211,7 +211,11 @@ impl<'a> Around<'a> {
         let [right, up] = self.axes;
         let place = |uv: DVec2| self.sites.positions[self.point] + uv.x as f32 * right + uv.y as f32 * up;
         let (margin, open) = self.margin();
-        let corners = self.cell_within(if open { margin } else { self.reach() }).reached(&self.sides);
+        let cell = self.cell_within(if open { margin } else { self.reach() });
+        if cell.parts(&self.sides, &self.flat[..self.count]) {
+            return None;
+        }
+        let corners = cell.reached(&self.sides);
         let near = |corner: DVec2| if open { corner.clamp_length_max(margin) } else { corner };
         Some(corners.into_iter().map(near).chain([DVec2::ZERO]).map(place).collect())
     }

@@ -503,7 +503,7 @@ mod tests {
             let (a, b) = (0.25 + 0.25 * random(2 * n), 0.5 * random(2 * n + 1));
             if n.is_multiple_of(2) { DVec3::new(a, b, 0.0) } else { DVec3::new(0.0, b, -a) }.as_vec3()
         };
-        let cloud = Cloud { positions: (0..3000).map(place).collect(), ..Cloud::default() };
+        let cloud = Cloud { positions: (0..1200).map(place).collect(), ..Cloud::default() };
         let at = |n: u32| {
             let off = if n.is_multiple_of(2) { 0.6 * BOUND } else { -0.6 * BOUND };
             DVec3::new(0.0, f64::from(n) / 40.0 - 0.5, off)
@@ -515,7 +515,7 @@ mod tests {
         let round = |splat: &Splat| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &round);
         let mut region = Region::new(surface.points.len());
-        let is_beside = |at: DVec3| at.x < 0.02 && at.y.abs() < 0.4;
+        let is_beside = |at: DVec3| at.x < 0.03 && at.y.abs() < 0.4;
         let mut grown = 0;
         for piece in (0..surface.pieces.len() as u32).filter(|&piece| is_beside(surface.middle(piece))) {
             if grower.grow(piece, &mut region).is_some() {
