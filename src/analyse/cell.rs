@@ -236,6 +236,7 @@ mod tests {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         assert!((cell.whole().farthest.unwrap() - 4.25_f64.sqrt()).abs() < 1e-12);
         assert!((cell.within(&[wall]).farthest.unwrap() - half).abs() < 1e-12);
+        assert!(cell.parts(&[wall], &[DVec2::NEG_X, DVec2::X]) && !cell.parts(&[wall], &[DVec2::NEG_X]));
         let corner =
             [side([[0.3, -3.0], [0.3, 0.2]], DVec2::NEG_X), side([[0.3, 0.2], [3.0, 0.2]], DVec2::Y)];
         let reached = cell.reached(&corner);

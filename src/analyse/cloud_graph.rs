@@ -203,7 +203,8 @@ impl<'a> Around<'a> {
     }
 
     /// The corners of what the point stands for, and the point, which may lie across the line; `None` where nothing
-    /// ends its sheet.
+    /// ends its sheet, and where a line passes in the point's plane before one that it is joined to: there the cells of
+    /// the points around do not fit together, and would leave cracks.
     fn cell(&self) -> Option<Vec<Vec3>> {
         if self.sides.is_empty() {
             return None;
