@@ -14,9 +14,12 @@ const CORNERS: usize = 4 + NEAREST;
 /// Places as near as this share of what a hole is wide to its rim lie in it: rounding must not tell.
 const ROUNDING: f64 = 1e-9;
 
-/// Corners at a line are looked for inside of it by so much, in shares of what a hole is wide, and as much farther from
-/// the ends of its pieces: in an acute corner of the sheet both pieces must hold them.
+/// Corners at a line are looked for inside of it by this share of what a hole is wide, so that the line itself does not
+/// hide them: far more than rounding moves them, far less than anything stands for.
 const INSIDE: f64 = 1e-6;
+
+/// And by this share away from the ends of its pieces: much more than [`INSIDE`], so that in an acute corner of the sheet
+/// they lie inside of the other piece too.
 const FROM_END: f64 = 1e-3;
 
 /// The Voronoi cell of the origin among sites in a plane.

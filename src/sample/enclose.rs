@@ -5,8 +5,8 @@ use glam::{DMat3, DVec2, DVec3};
 use super::grow::{Domain, Grower};
 use super::region::Region;
 use super::settle::{Candidate, settle};
+use super::shaped::{Shaped, boxed};
 use crate::analyse::surface::Surface;
-use crate::fit::ellipse::{around, least_turn};
 use crate::fit::pose::{Axes, Pose};
 
 /// An ellipse around places goes on by this factor beyond the farthest, so that the turn and the
@@ -23,9 +23,9 @@ const ROUNDS: usize = 2;
 /// Pieces that one splat is to cover.
 pub(super) struct Need {
     pieces: Vec<u32>,
-    /// The corners of the pieces.
+    /// The corners of the pieces, and of what those beside lines stand for.
     places: Vec<DVec3>,
-    /// Margin by which the pieces of a cloud must lie inside.
+    /// Margin by which the other pieces of a cloud must lie inside.
     margin: f64,
     /// A frame at their middle.
     pose: Pose,
@@ -66,19 +66,9 @@ impl Need {
     fn laid_out<'a>(&'a self, axes: Axes, grower: &Grower<'a>) -> Layout<'a> {
         let pose = match axes {
             Axes::Principal => self.pose,
-            Axes::Held => self.boxed(),
+            Axes::Held => boxed(&self.places, &self.pose),
         };
         Layout { need: self, grower: Grower { axes, ..*grower }, pose, piece: self.central(grower.surface) }
-    }
-
-    /// The frame, turned about its normal so that the box around all places is least.
-    fn boxed(&self) -> Pose {
-        self.pose.turned(least_turn(&self.flat(&self.pose)))
-    }
-
-    /// Its places in the plane of a frame.
-    fn flat(&self, pose: &Pose) -> Vec<DVec2> {
-        self.places.iter().map(|&place| pose.to_local(place).truncate()).collect()
     }
 
     /// The piece nearest to the middle.
@@ -147,8 +137,7 @@ impl Layout<'_> {
 
     /// An ellipse along a frame's axes around all places, and the frame moved to its centre.
     fn ellipse(&self, pose: &Pose, outset: f64) -> (Pose, DVec2) {
-        let (center, radii) = around(&self.need.flat(pose));
-        let moved = Pose { center: pose.center + pose.axes * center.extend(0.0), ..*pose };
-        (moved, outset * radii + self.need.margin)
+        let Shaped { pose, radii } = Shaped::along(&self.need.places, pose);
+        (pose, outset * radii + self.need.margin)
     }
 }

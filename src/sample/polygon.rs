@@ -38,7 +38,7 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     let pose = Pose::at(middle, normal);
     // A point of a cloud may be stood for by another, which its disc need not reach.
     let is_spot = corners[0] == corners[1];
-    let (pose, radii) = if let Some(Shaped { pose, radii }) = Shaped::around(surface.cells.of(piece), &pose) {
+    let (pose, radii) = if let Some(Shaped { pose, radii }) = Shaped::over(surface, piece, &pose) {
         (pose, radii)
     } else if is_spot {
         (pose, DVec2::splat(surface.piece_margin(piece)))

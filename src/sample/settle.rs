@@ -9,7 +9,6 @@ use super::margin::disc_inside;
 use super::outline::{Outline, outlines};
 use super::region::Region;
 use crate::fit::clip::{Care, Clips};
-use crate::fit::ellipse::holds;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -174,25 +173,24 @@ impl Candidate {
 }
 
 impl Covering<'_> {
-    /// Whether a place lies within the domain, near the quadric and not cut away.
-    fn covers(&self, local: DVec3) -> bool {
-        holds(local.truncate(), self.trusted) && self.keeps(local)
+    /// Whether a place lies within the domain by a margin, near the quadric and not cut away.
+    fn covers(&self, local: DVec3, margin: f64) -> bool {
+        disc_inside(local.truncate(), margin, self.trusted)
+            && self.grower.near(self.splat.curvature, local, ROUNDED_SLACK)
+            && !self.cuts(local.truncate())
     }
 
     /// Whether what a spot stands for lies within the domain, and the spot near the quadric and not cut away.
+    ///
+    /// A cell lies within it if its corners do, since an ellipse is convex; it holds the spot.
     fn covers_spot(&self, spot: u32, local: DVec3) -> bool {
-        let cell = self.grower.surface.cells.of(spot);
-        let inside = |corner: &Vec3| holds(self.splat.to_local(corner.as_dvec3()).truncate(), self.trusted);
-        let within = if cell.is_empty() {
-            disc_inside(local.truncate(), self.grower.surface.piece_margin(spot), self.trusted)
-        } else {
-            cell.iter().all(inside)
-        };
-        within && self.keeps(local)
-    }
-
-    fn keeps(&self, local: DVec3) -> bool {
-        self.grower.near(self.splat.curvature, local, ROUNDED_SLACK) && !self.cuts(local.truncate())
+        let surface = self.grower.surface;
+        let inside =
+            |corner: &Vec3| disc_inside(self.splat.to_local(corner.as_dvec3()).truncate(), 0.0, self.trusted);
+        match surface.cells.of(spot) {
+            [] => self.covers(local, surface.piece_margin(spot)),
+            cell => self.covers(local, 0.0) && cell.iter().all(inside),
+        }
     }
 
     fn cuts(&self, uv: DVec2) -> bool {
@@ -202,7 +200,7 @@ impl Covering<'_> {
     /// The triangles that are covered, ascending; `None` if the splat strays from one it reaches.
     fn triangles(&self, region: &mut Region) -> Option<Vec<u32>> {
         let surface = self.grower.surface;
-        let inside = region.members.iter().filter(|member| self.covers(member.local));
+        let inside = region.members.iter().filter(|member| self.covers(member.local, 0.0));
         let points: Vec<u32> = inside.map(|member| member.point).collect();
         region.mark_only(&points);
         let mut pieces = Vec::new();

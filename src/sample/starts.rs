@@ -50,7 +50,7 @@ impl Starts {
         let normal: DVec3 = corners.iter().map(|&corner| surface.normal(corner)).sum();
         let pose = Pose::at(surface.middle(piece), normal);
         let flat = corners.map(|corner| pose.to_local(surface.point(corner)).truncate());
-        let cell = Shaped::around(surface.cells.of(piece), &pose);
+        let cell = Shaped::over(surface, piece, &pose);
         let reach = flat.iter().map(|uv| uv.length()).fold(0.0, f64::max);
         let (turn, radii) = circumellipse(flat);
         let fit = grower.budget.fit;
