@@ -10,6 +10,9 @@ import clouds
 # Percent of the diagonal: from where a pixel shows to a tenth of the detail of the scans.
 BOUNDS = ("1", "0.3", "0.1", "0.03")
 
+# Lines that are found on the mesh whose points a cloud is.
+OF_MESH = "of the mesh"
+
 # For what is smooth and exact enough to be worth it.
 FINER = (*BOUNDS, "0.01")
 
@@ -27,7 +30,7 @@ class Model:
     kind: str = "mesh"
     bounds: tuple = BOUNDS
     options: list = field(default_factory=list)  # of bake and measure alike
-    lines: str | None = None  # a file of feature lines among the models
+    lines: str | None = None  # a file of feature lines among the models, or OF_MESH
     made: Callable | None = None  # makes the input from the source
     what: str = ""  # beside the name
 
@@ -39,9 +42,10 @@ class Model:
         return f"{pathlib.Path(self.source).stem}{', ' if self.what else ''}{self.what}"
 
 
-def sampled(name, source, many, noise):
-    what = f"{many:,} points" + (f", noise of {noise:g} spacings" if noise else "")
-    return Model(name, source, "cloud", made=lambda mesh, made: clouds.sample(mesh, many, noise, made), what=what)
+def sampled(name, source, many, noise, lines=None):
+    what = f"{many:,} points" + (f", noise of {noise:g} spacings" if noise else "") + (", lines given" if lines else "")
+    made = lambda mesh, made: clouds.sample(mesh, many, noise, made)
+    return Model(name, source, "cloud", made=made, lines=lines, what=what)
 
 
 ABC = "abc-00000049"
@@ -63,7 +67,9 @@ MODELS = [
     sampled("fertility-smooth-points", "fertility-smooth.ply", 1_000_000, 0.0),
     sampled("fertility-smooth-noisy-points", "fertility-smooth.ply", 1_000_000, 0.5),
     sampled("fandisk-points", "fandisk.obj", 200_000, 0.0),
+    sampled("fandisk-points-given", "fandisk.obj", 200_000, 0.0, OF_MESH),
     sampled(f"{ABC}-points", f"{ABC}.obj", 500_000, 0.0),
+    sampled(f"{ABC}-points-given", f"{ABC}.obj", 500_000, 0.0, f"{ABC}.features.obj"),
     sampled(f"{ABC}-noisy-points", f"{ABC}.obj", 500_000, 0.5),
     Model("dragon-scans", "dragon-scans.ply", "cloud", options=["--denoise"], what="--denoise"),
     Model("topography", "topography.laz", "cloud", made=clouds.from_laz),
@@ -91,10 +97,12 @@ def find(model, runs):
     """
     source = folder() / model.source
     options = list(model.options)
-    lines = folder() / model.lines if model.lines else None
+    lines = folder() / model.lines if model.lines and model.lines != OF_MESH else None
     for path in (source, lines):
         if path is not None and not path.exists():
             raise clouds.Missing(f"no {path.name} among the models")
+    if model.lines == OF_MESH:
+        lines = runs.lines(source)
     if lines:
         options += ["--edges", lines]
     if model.made is None:

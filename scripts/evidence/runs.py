@@ -68,6 +68,17 @@ class Runs:
     def call(self, *arguments):
         return subprocess.run([self.program, *arguments], capture_output=True, text=True, errors="replace")
 
+    def lines(self, path):
+        """The feature lines that are found on a mesh: a file of them."""
+        made = self.work / "inputs" / f"{self.key(path, ['edges'])}.obj"
+        if not made.exists():
+            new = made.with_suffix(".new.obj")
+            done = self.call("edges", path, "-o", new, "--quiet")
+            if done.returncode != 0:
+                raise RuntimeError(f"{path.name}: {done.stderr.strip()}")
+            os.replace(new, made)
+        return made
+
     def bake(self, path, options):
         """Bakes an input; options are texts, or paths of files of lines."""
         key = self.key(path, ["bake", *options])

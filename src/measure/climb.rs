@@ -42,7 +42,7 @@ pub(super) fn starts(samples: &[(DVec3, f64)], step: f64) -> Vec<usize> {
     chosen
 }
 
-/// The largest value found uphill from any of some places, given with their values.
+/// The largest value found uphill from any of some places, given with their values, and where; `None` of none.
 ///
 /// `around` lists places about a step from one; `value` measures a place.
 pub(super) fn highest<P: Copy + Send + Sync, I: Iterator<Item = P>>(
@@ -50,7 +50,7 @@ pub(super) fn highest<P: Copy + Send + Sync, I: Iterator<Item = P>>(
     step: f64,
     around: impl Fn(P, f64) -> I + Sync,
     value: impl Fn(P) -> Option<f64> + Sync,
-) -> f64 {
+) -> Option<(P, f64)> {
     let tops = from.par_iter().map(|&(start, height)| {
         let (mut at, mut top, mut step, mut halvings) = (start, height, step, 0);
         for _ in 0..MOST_MOVES {
@@ -61,9 +61,9 @@ pub(super) fn highest<P: Copy + Send + Sync, I: Iterator<Item = P>>(
                 None => (step, halvings) = (0.5 * step, halvings + 1),
             }
         }
-        top
+        (at, top)
     });
-    tops.reduce(|| 0.0, f64::max)
+    tops.reduce_with(|most, next| if next.1 > most.1 { next } else { most })
 }
 
 /// Steps towards the faces, edges and corners of a cube, of a length along each axis.
@@ -76,6 +76,8 @@ pub(super) fn around(at: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
 
     #[test]
@@ -90,7 +92,10 @@ mod tests {
         assert!(chosen.len() > 10 && samples[chosen[0]].1 < 1.9995);
         let from: Vec<(DVec3, f64)> = chosen.iter().map(|&n| samples[n]).collect();
         let flat = |at, step| around(at, step).map(|p: DVec3| p.with_z(0.0));
-        assert!(highest(&from, 0.1, flat, value) > 2.0 - 1e-4);
-        assert!(highest(&from, 0.1, |_, _| std::iter::empty(), value) < 1.9995, "without a step, no gain");
+        let (at, height) = highest(&from, 0.1, flat, value).unwrap();
+        assert!(height > 2.0 - 1e-4 && value(at) == Some(height));
+        let (_, height) = highest(&from, 0.1, |_, _| std::iter::empty(), value).unwrap();
+        assert!(height < 1.9995, "without a step, no gain");
+        assert_eq!(highest(&[], 0.1, flat, value), None);
     }
 }

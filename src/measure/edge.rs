@@ -55,17 +55,18 @@ pub fn edge(asset: &Asset, lines: &[Vec<DVec3>]) -> Option<Distances> {
     if on_lines.is_empty() {
         return None;
     }
-    let mut samples = one_sided(&on_lines, &borders, asset.diagonal);
+    let mut samples: Vec<(DVec3, Sample)> =
+        on_lines.iter().copied().zip(one_sided(&on_lines, &borders, asset.diagonal)).collect();
     let (bordering, owners): (Vec<DVec3>, Vec<u32>) =
         spaced(&borders, step).into_iter().map(|(place, border)| (place, owners[border])).unzip();
     let off = one_sided(&bordering, &lines, asset.diagonal);
     let insides = Insides::new(asset);
     let shows = |((sample, &place), &own): ((Sample, &DVec3), &u32)| {
         let at_edge = sample.0 <= AT_EDGE * asset.max_error;
-        (!insides.hold(place, own, at_edge)).then_some(sample)
+        (!insides.hold(place, own, at_edge)).then_some((place, sample))
     };
     samples.par_extend(off.into_par_iter().zip(&bordering).zip(&owners).filter_map(shows));
-    Some(spread::distances(&samples))
+    Some(spread::placed(&samples, None))
 }
 
 /// The borders of those splats whose own come this close to a line, and whose each is.

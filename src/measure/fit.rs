@@ -46,6 +46,8 @@ pub fn points(model: Model<'_>, left_out: &[u32]) -> Vec<Vec3> {
 pub struct Fit {
     /// Over the points that some splat covers, model units.
     pub accuracy: Accuracy,
+    /// The point of the largest distance, model units; `None` if no point is covered.
+    pub worst: Option<Vec3>,
     /// Points that no splat covers within `reach`.
     pub uncovered: usize,
 }
@@ -65,10 +67,17 @@ pub fn fit(points: &[Vec3], asset: &Asset, reach: f64) -> Fit {
             best[point as usize].fetch_min(distance.to_bits(), Ordering::Relaxed);
         }
     });
-    let distances = best.into_par_iter().map(|best| f64::from_bits(best.into_inner()));
-    let mut distances: Vec<f64> = distances.filter(|distance| distance.is_finite()).collect();
+    let distances = best.into_iter().map(|best| f64::from_bits(best.into_inner()));
+    let covered: Vec<(f64, Vec3)> = distances
+        .zip(points)
+        .filter(|found| found.0.is_finite())
+        .map(|(distance, &at)| (distance, at))
+        .collect();
+    let worst = covered.iter().copied().reduce(|most, next| if next.0 > most.0 { next } else { most });
+    let mut distances: Vec<f64> = covered.into_iter().map(|found| found.0).collect();
     distances.par_sort_unstable_by(f64::total_cmp);
-    Fit { uncovered: points.len() - distances.len(), accuracy: accuracy(&distances) }
+    let uncovered = points.len() - distances.len();
+    Fit { uncovered, worst: worst.map(|found| found.1), accuracy: accuracy(&distances) }
 }
 
 /// The points a splat covers within `reach`, with their distances.

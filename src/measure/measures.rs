@@ -59,6 +59,8 @@ pub struct Distances {
     pub p99: f64,
     /// Largest.
     pub max: f64,
+    /// A place where it is the largest, input units; `None` where nothing was measured.
+    pub at: Option<[f64; 3]>,
 }
 
 /// A set of angles, degrees in `[0, 180]`.
@@ -198,18 +200,19 @@ impl Measures {
     pub fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         let distances = [
-            ("fit max", self.fit.max, self.budget),
-            ("backward max", self.backward.max, BACKWARD_BUDGETS * self.budget),
+            ("fit max", self.fit, self.budget),
+            ("backward max", self.backward, BACKWARD_BUDGETS * self.budget),
         ];
         // Between the points of a cloud its surface is a guess, and its lines are only found.
         let of_mesh = [
-            ("forward max", self.forward.max, FORWARD_BUDGETS * self.budget),
-            ("edge max", self.edge.map_or(0.0, |edge| edge.max), self.budget),
+            ("forward max", self.forward, FORWARD_BUDGETS * self.budget),
+            ("edge max", self.edge.unwrap_or_default(), self.budget),
         ];
         let more = if self.kind == MESH { &of_mesh[..] } else { &[] };
-        for &(name, value, limit) in distances.iter().chain(more) {
-            if value.is_nan() || value > limit {
-                faults.push(format!("{name} is {value:.3e} of the diagonal, more than {limit:.3e}"));
+        for &(name, Distances { max, at, .. }, limit) in distances.iter().chain(more) {
+            if max.is_nan() || max > limit {
+                let place = at.map(|at| format!(", at {}", place(at))).unwrap_or_default();
+                faults.push(format!("{name} is {max:.3e} of the diagonal, more than {limit:.3e}{place}"));
             }
         }
         for (name, pixels) in [("missing", self.holes.missing), ("extra", self.holes.extra)] {
@@ -231,6 +234,12 @@ impl Measures {
         let json = serde_json::to_string_pretty(self);
         json.map(|text| text + "\n").map_err(|error| Error::Internal(format!("measures: {error}")))
     }
+}
+
+/// A place for people.
+#[must_use]
+pub fn place([x, y, z]: [f64; 3]) -> String {
+    format!("({x:.6}, {y:.6}, {z:.6})")
 }
 
 #[cfg(test)]

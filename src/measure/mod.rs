@@ -108,8 +108,14 @@ fn against(
     let cost = cost::cost(subject.bytes, asset, read, reference.views())?;
     // An asset of one point has no diagonal: its errors are zero, not infinite.
     let share = |length: f64| if asset.diagonal > 0.0 { length / asset.diagonal } else { 0.0 };
-    let accuracy = Distances { rms: fit.accuracy.rms, p99: fit.accuracy.p99, max: fit.accuracy.max };
-    let shares = |d: Distances| Distances { rms: share(d.rms), p99: share(d.p99), max: share(d.max) };
+    let at = fit.worst.map(|at| at.as_dvec3().to_array());
+    let accuracy = Distances { rms: fit.accuracy.rms, p99: fit.accuracy.p99, max: fit.accuracy.max, at };
+    let shares = |d: Distances| Distances {
+        rms: share(d.rms),
+        p99: share(d.p99),
+        max: share(d.max),
+        at: d.at.map(|at| asset.frame.to_input(at.into()).to_array()),
+    };
     Ok(Measures {
         schema: SCHEMA.into(),
         diagonal: asset.diagonal * asset.frame.scale(),

@@ -1,5 +1,7 @@
 //! Sums up weighted samples.
 
+use glam::DVec3;
+
 use super::measures::{Angles, Distances};
 
 /// Share of the weight that the 99th percentile does not pass.
@@ -25,7 +27,18 @@ pub(super) fn distances(samples: &[Sample]) -> Distances {
         below += weight;
         below >= MOST * total
     });
-    Distances { rms: (squares / total).sqrt(), p99: p99.map_or(max, |sample| sample.0), max }
+    Distances { rms: (squares / total).sqrt(), p99: p99.map_or(max, |sample| sample.0), max, at: None }
+}
+
+/// The same of samples with their places, those of the largest found beside them uphill too: `at` is one of
+/// them, in the units of the places.
+pub(super) fn placed(samples: &[(DVec3, Sample)], top: Option<(DVec3, f64)>) -> Distances {
+    let values: Vec<Sample> = samples.iter().map(|sample| sample.1).collect();
+    let all = samples.iter().map(|&(at, (value, _))| (at, value)).chain(top);
+    // Of places as far off the first, whatever the machine.
+    let largest = all.reduce(|most, next| if next.1 > most.1 { next } else { most });
+    let found = distances(&values);
+    largest.map_or(found, |(at, max)| Distances { max, at: Some(at.to_array()), ..found })
 }
 
 /// The same of angles in degrees.
@@ -37,6 +50,16 @@ pub(super) fn angles(samples: &[Sample]) -> Angles {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_has_its_place() {
+        let samples = [(DVec3::X, (2.0, 1.0)), (DVec3::Y, (3.0, 0.0)), (DVec3::Z, (3.0, 1.0))];
+        let found = placed(&samples, None);
+        assert_eq!((found.max, found.at), (3.0, Some([0.0, 1.0, 0.0])));
+        let uphill = placed(&samples, Some((DVec3::ONE, 4.0)));
+        assert_eq!((uphill.max, uphill.at, uphill.rms), (4.0, Some([1.0; 3]), found.rms));
+        assert_eq!(placed(&[], None), Distances::default());
+    }
 
     #[test]
     fn weights_count() {

@@ -23,7 +23,7 @@ use crate::model::asset::Asset;
 use crate::model::mesh::Mesh;
 use crate::tolerance::DEFAULT_EDGE_ANGLE;
 
-/// How far the splats' surfaces and the input's lie from each other. Distances in model units.
+/// How far the splats' surfaces and the input's lie from each other. Distances and places in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceErrors {
     /// From samples of the input's surface to the union of the clipped splats. Of a cloud, from
@@ -60,17 +60,18 @@ pub fn surface(asset: &Asset, input: &InputSurface<'_>) -> Result<SurfaceErrors>
     if patches.area() <= 0.0 {
         return Err(Error::Usage("the file has no splat of which anything is left to measure".into()));
     }
-    let (mut forward, normal, worst) = forward(asset, &patches, &input.probes);
+    let Forward { samples, normal, worst } = forward(asset, &patches, &input.probes);
     Ok(match &input.shape {
         Shape::Mesh { triangles, area } => {
             let step = (area / MOST as f64).sqrt();
             let around = |at, step| climb::around(at, step).filter_map(|place| triangles.closest(place));
             let distance = |at| patches.nearest(at, &mut None).map(|nearest| nearest.distance);
-            forward.max = forward.max.max(climb::highest(&worst, step, around, distance));
+            let forward = spread::placed(&samples, climb::highest(&worst, step, around, distance));
             let backward = backward(&patches, |at, last| triangles.distance(at, last));
             SurfaceErrors { forward, backward, normal, overlap: Some(patches.area() / area) }
         }
         Shape::Cloud(fit) => {
+            let forward = spread::placed(&samples, None);
             let backward = backward(&patches, |at, _| Some(fit.distance(at)));
             SurfaceErrors { forward, backward, normal, overlap: None }
         }
@@ -84,9 +85,18 @@ pub fn overlap(asset: &Asset, mesh: &Mesh) -> Option<f64> {
     (area > 0.0).then(|| Patches::new(asset).area() / area)
 }
 
-/// Distances and angles of the probes, and the worst of them with their distances.
-fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> (Distances, Angles, Vec<(DVec3, f64)>) {
-    let measured: Vec<(DVec3, Sample, Option<Sample>)> = probes
+/// What the probes find.
+struct Forward {
+    /// The probes' distances.
+    samples: Vec<(DVec3, Sample)>,
+    /// Their angles.
+    normal: Angles,
+    /// The worst of them with their distances.
+    worst: Vec<(DVec3, f64)>,
+}
+
+fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> Forward {
+    let measured: Vec<((DVec3, Sample), Option<Sample>)> = probes
         .par_chunks(RUN)
         .flat_map_iter(|run| {
             let mut last = None;
@@ -102,16 +112,16 @@ fn forward(asset: &Asset, patches: &Patches<'_>, probes: &[Probe]) -> (Distances
                     near.iter().map(|place| probe.angle(patches.normal(place))).fold(angle, f64::min)
                 });
                 let angle = angle.map(|angle| (angle, probe.weight));
-                Some((probe.at, (nearest.distance, probe.weight), angle))
+                Some(((probe.at, (nearest.distance, probe.weight)), angle))
             })
         })
         .collect();
-    let distances: Vec<Sample> = measured.iter().map(|sample| sample.1).collect();
-    let angles: Vec<Sample> = measured.iter().filter_map(|sample| sample.2).collect();
-    let samples: Vec<(DVec3, f64)> = measured.iter().map(|sample| (sample.0, sample.1.0)).collect();
-    let starts = climb::starts(&samples, (patches.area() / MOST as f64).sqrt());
-    let worst = starts.into_iter().map(|n| samples[n]).collect();
-    (spread::distances(&distances), spread::angles(&angles), worst)
+    let (samples, angles): (Vec<(DVec3, Sample)>, Vec<Option<Sample>>) = measured.into_iter().unzip();
+    let angles: Vec<Sample> = angles.into_iter().flatten().collect();
+    let heights: Vec<(DVec3, f64)> = samples.iter().map(|&(at, (distance, _))| (at, distance)).collect();
+    let starts = climb::starts(&heights, (patches.area() / MOST as f64).sqrt());
+    let worst = starts.into_iter().map(|n| heights[n]).collect();
+    Forward { samples, normal: spread::angles(&angles), worst }
 }
 
 /// From the splats to whatever gives distances; it is handed the place before and its distance.
@@ -141,12 +151,10 @@ fn backward(
     let around = |(patch, uv): (usize, DVec2), step| {
         patches.patches[patch].around(uv, step).map(move |to| (patch, to))
     };
-    let value =
-        |(patch, uv): (usize, DVec2)| distance(patches.patches[patch].splat.surface_point(uv), &mut None);
-    let top = climb::highest(&worst, step, around, value);
-    let distances: Vec<Sample> = measured.iter().map(|sample| sample.2).collect();
-    let found = spread::distances(&distances);
-    Distances { max: found.max.max(top), ..found }
+    let place = |(patch, uv): (usize, DVec2)| patches.patches[patch].splat.surface_point(uv);
+    let top = climb::highest(&worst, step, around, |at| distance(place(at), &mut None));
+    let samples: Vec<(DVec3, Sample)> = measured.iter().map(|&(_, at, sample)| (at, sample)).collect();
+    spread::placed(&samples, top.map(|(at, height)| (place(at), height)))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::measure::measures::{Angles, Chunk, Cost, Distances, Holes, Image};
 /// Numbers as a smooth surface would give them: splats as a power of the budget, twenty bytes
 /// each, a second a thousand.
 fn outcome(budget: f64, splats: f64) -> Outcome {
-    let distances = |share: f64| Distances { rms: 0.3 * share, p99: 0.8 * share, max: share };
+    let distances = |share: f64| Distances { rms: 0.3 * share, p99: 0.8 * share, max: share, at: None };
     let bytes = 20.0 * splats;
     let chunk = |name: &str, share: f64| Chunk {
         name: name.into(),

@@ -5,7 +5,7 @@ use crate::measure::documented::assert_documented;
 
 /// Measures that keep every promise, with everything that may be `None` there.
 fn sound() -> Measures {
-    let distances = Distances { rms: 1e-4, p99: 2e-4, max: 9e-4 };
+    let distances = Distances { rms: 1e-4, p99: 2e-4, max: 9e-4, at: Some([1.0, 2.0, 3.0]) };
     Measures {
         schema: SCHEMA.into(),
         diagonal: 3.0,
@@ -45,11 +45,12 @@ fn measures_survive_their_json() {
 fn each_broken_promise_is_one_fault() {
     assert_eq!(sound().faults(), Vec::<String>::new());
     type Plant = fn(&mut Measures);
-    let breaks: [(&str, Plant); 8] = [
+    let breaks: [(&str, Plant); 9] = [
         ("fit max", |m| m.fit.max = 1.1e-3),
         ("fit max", |m| m.fit.max = f64::NAN),
         ("backward max", |m| m.backward.max = 2.1e-3),
         ("forward max", |m| m.forward.max = 2.1e-3),
+        ("more than 1.000e-3, at (1.000000, 2.000000, 3.000000)", |m| m.fit.max = 1.1e-3),
         ("edge max", |m| m.edge = Some(Distances { max: 1.1e-3, ..Distances::default() })),
         ("1 pixels are missing", |m| m.holes.missing = 1),
         ("2 pixels are extra", |m| m.holes.extra = 2),
