@@ -2,12 +2,22 @@
 
 use glam::{DVec3, Vec3};
 
-use super::line_network::Network;
+use super::line_network::{CROWD, Network};
 use super::segment_grid::SegmentGrid;
 use super::surface::NONE;
 
 /// Two lines run beside each other where they keep within this cosine (25°) of the same way.
 const PARALLEL: f64 = 0.906;
+
+/// But not where they have parted just before by more than this (cosine of 10°): they bound a face that begins there.
+const FORK: f64 = 0.985;
+
+/// They are close no farther from there than this many times as far as lines may be that are made one: so far are straight
+/// lines that part by 10°.
+const ARM: f64 = 6.0;
+
+/// An arm has no more segments: small loops have no end.
+const LONGEST: usize = 32;
 
 /// Of the lines of a network, those within `reach` (model units, at a place) of a longer one give way to it, and it
 /// moves halfway to them. The segments that are left, as pieces, and the length of those that gave way.
@@ -37,6 +47,7 @@ impl Doubled {
         let count = network.segments.len();
         let grid = network.grid();
         let strands = network.strands();
+        let forks = forks(network, reach);
         let mut rank = vec![NONE; count];
         let mut of = vec![NONE; count];
         for (strand, number) in strands.iter().zip(0..) {
@@ -47,6 +58,7 @@ impl Doubled {
                     rank[other as usize] < number
                         && of[other as usize] == NONE
                         && network.along(other).dot(along).abs() > PARALLEL
+                        && forks.binary_search(&[segment.min(other), segment.max(other)]).is_err()
                 };
                 if let Some(near) = grid.nearest_of(middle, reach(middle), stays) {
                     of[segment as usize] = near.segment;
@@ -86,6 +98,38 @@ impl Doubled {
     }
 }
 
+/// Pairs of segments, the lesser first, ascending, on lines that part nearby, as far from there as they are close.
+fn forks(network: &Network, reach: &impl Fn(DVec3) -> f64) -> Vec<[u32; 2]> {
+    let mut pairs = Vec::new();
+    for node in 0..network.nodes.len() as u32 {
+        let around = network.at_node.row(node);
+        if around.len() > CROWD {
+            continue;
+        }
+        for (n, &a) in around.iter().enumerate() {
+            for &b in &around[..n] {
+                let cosine = network.along_from(a, node).dot(network.along_from(b, node));
+                if (PARALLEL..FORK).contains(&cosine) {
+                    let [a, b] = [a, b].map(|segment| arm(network, segment, node, reach));
+                    pairs.extend(a.iter().flat_map(|&a| b.iter().map(move |&b| [a.min(b), a.max(b)])));
+                }
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// The segments from a node on, by one of its own, as far as another arm of a fork there is close.
+fn arm(network: &Network, segment: u32, node: u32, reach: &impl Fn(DVec3) -> f64) -> Vec<u32> {
+    let place = |node: u32| network.nodes[node as usize].as_dvec3();
+    let close = ARM * reach(place(node));
+    let way = network.through(segment, network.across(segment, node)).take(LONGEST);
+    let near = way.take_while(|&(_, to)| place(to).distance(place(node)) <= close);
+    near.map(|(segment, _)| segment).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +166,25 @@ mod tests {
         // The wall and the branch hang on what is left: all is one.
         let loose = (0..left.nodes.len() as u32).filter(|&node| left.at_node.row(node).len() == 1);
         assert_eq!(loose.count(), 4, "two ends of the crest, one of the wall, one of the branch");
+    }
+
+    #[test]
+    fn lines_that_part_at_an_acute_angle_are_two_from_the_start() {
+        for (degrees, stay) in [(17.0_f64, true), (5.0, false)] {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            let fork = [DVec3::X, DVec3::new(cos, sin, 0.0)].map(|way| [DVec3::ZERO, 0.4 * way]);
+            let (left, length) = merged(&fork);
+            assert_eq!(left.segments.len() == network(&fork).segments.len(), stay, "{degrees}: {length}");
+        }
+        // A loop so small that it has no end within reach.
+        let at = |n: f64| {
+            let (sin, cos) = libm::sincos(0.25 * std::f64::consts::TAU * n);
+            0.03 * DVec3::new(cos, sin, 0.0)
+        };
+        let side = |n: f64| [at(n), at(n + 1.0)];
+        let tail = [at(0.0), at(0.0) + DVec3::new(-0.2, 0.14, 0.0)];
+        let (left, _) = merged(&[side(0.0), side(1.0), side(2.0), side(3.0), tail]);
+        assert!(!left.segments.is_empty());
     }
 
     #[test]

@@ -20,7 +20,7 @@ const SMOOTH: f64 = 0.866;
 
 /// Where more segments than this meet, none carries another on: corners of models have up to twelve, and the work at
 /// each stays bounded.
-const CROWD: usize = 12;
+pub(super) const CROWD: usize = 12;
 
 /// A line farther than this many spacings from the cloud touches no surface. Spacings of single points are as small as
 /// half of those around: lines three spacings off have no gaps.
@@ -95,9 +95,7 @@ impl Network {
     /// Makes lines one that keep close to each other.
     #[must_use]
     pub fn distinct(self, around: &Spacings<'_>) -> Self {
-        let reach = |spacings: f64| {
-            move |place: DVec3| around.near(place).map_or(0.0, |(_, spacing)| spacings * spacing)
-        };
+        let reach = |spacings: f64| move |place: DVec3| spacings * around.usual(place);
         let (pieces, merged) = merged(&self, &reach(CLOSE));
         let network = Self { far: self.far, merged: self.merged + merged, ..Self::of_pieces(&pieces) };
         let detours = detours(&network, &reach(DETOUR));
@@ -144,6 +142,12 @@ impl Network {
     pub fn along(&self, segment: u32) -> DVec3 {
         let [a, b] = self.ends(segment);
         (b - a).normalize_or(DVec3::X)
+    }
+
+    /// Unit vector along a segment from one of its nodes.
+    pub(super) fn along_from(&self, segment: u32, node: u32) -> DVec3 {
+        let along = self.along(segment);
+        if self.segments[segment as usize][0] == node { along } else { -along }
     }
 
     /// Adds to some segments all that meet them, and those that meet these in turn as far as they do within
@@ -303,10 +307,7 @@ impl Network {
 
     /// Of the others at a node of a segment the one that it turns least into, if it turns smoothly; or [`NONE`].
     fn smoothest(&self, segment: u32, node: u32) -> u32 {
-        let outward = |segment: u32| {
-            let along = self.along(segment);
-            if self.segments[segment as usize][0] == node { along } else { -along }
-        };
+        let outward = |segment: u32| self.along_from(segment, node);
         let own = outward(segment);
         let others = self.at_node.row(node).iter().filter(|&&other| other != segment);
         let turns = others.map(|&other| (own.dot(outward(other)), other));

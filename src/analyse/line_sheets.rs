@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::cloud_graph::Sites;
 use super::line_network::Network;
 use super::segment_grid::SegmentGrid;
+use super::strips::{Strips, put_among};
 use super::surface::Rows;
 use crate::model::polyline::nearest_on;
 
@@ -103,7 +104,13 @@ impl Sheets {
     pub fn find(network: &Network, sites: &Sites) -> Self {
         let told = |n: usize| depth(sites, n).max(TOLD_APART * f64::from(sites.spacing[n]));
         let mut beside = beside_within(network, sites, told);
-        let of = sheets_of(network, sites, &beside, |_| true);
+        let mut of = sheets_of(network, sites, &beside, |_| true);
+        let strips = Strips::new(network, sites, &beside);
+        of.par_iter_mut().zip(0_u32..network.segments.len() as u32).for_each(|(sheets, segment)| {
+            if let Some(strip) = strips.beyond(segment, sheets) {
+                put_among(sheets, network.along(segment), strip);
+            }
+        });
         beside.par_iter_mut().enumerate().for_each(|(n, beside)| {
             let near = |beside: &Beside| beside.offset.length() <= depth(sites, n);
             *beside = beside.filter(|beside| near(beside) || meet_sharply(&of[beside.segment as usize]));
@@ -205,7 +212,7 @@ fn ends(network: &Network, segment: u32, node: u32, place: DVec3, reach: f64) ->
 }
 
 /// The segments that carry one on in both directions, itself first.
-fn window(network: &Network, segment: u32) -> Vec<u32> {
+pub(super) fn window(network: &Network, segment: u32) -> Vec<u32> {
     let along = network.along(segment);
     let mut found = vec![segment];
     for start in network.segments[segment as usize] {

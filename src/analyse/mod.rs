@@ -51,6 +51,7 @@ pub mod smooth;
 pub mod smoothed;
 mod snap;
 pub mod split;
+mod strips;
 pub mod surface;
 pub mod thin;
 pub mod weld;

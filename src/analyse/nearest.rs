@@ -132,12 +132,24 @@ impl Spacings<'_> {
         (spacing > 0.0).then(|| (self.positions[point].as_dvec3().distance(place), spacing))
     }
 
+    /// The mean spacing of the points around a place, model units; 0 where there are none. That of a single one may be
+    /// half of it.
+    #[must_use]
+    pub fn usual(&self, place: DVec3) -> f64 {
+        let around = self.search.around(place.as_vec3(), USUAL);
+        let sum: f64 = around.iter().map(|&point| f64::from(self.spacing[point as usize])).sum();
+        sum / around.len().max(1) as f64
+    }
+
     /// The spacing of the point nearest to a place, model units; 0 where it has none.
     #[must_use]
     pub fn at(&self, place: DVec3) -> f64 {
         self.near(place).map_or(0.0, |(_, spacing)| spacing)
     }
 }
+
+/// Points whose mean spacing is that of the surface around: two rings of an even sampling.
+const USUAL: usize = 16;
 
 /// Neighbours whose mean distance is a point's spacing: the first ring of an even sampling.
 const RING: usize = 6;
