@@ -10,15 +10,15 @@ import clouds
 # Percent of the diagonal: from where a pixel shows to a tenth of the detail of the scans.
 BOUNDS = ("1", "0.3", "0.1", "0.03")
 
-# Lines that are found on the mesh whose points a cloud is.
-OF_MESH = "of the mesh"
-
 # For what is smooth and exact enough to be worth it.
 FINER = (*BOUNDS, "0.01")
 
 # Of a quick run: one that is narrowed for a mesh, and the default.
 QUICK_BOUNDS = ("0.3", "0.1")
 QUICK = ("fandisk", "teapot", "fandisk-points")
+
+# Feature lines of a cloud that are those found on the mesh whose points it is.
+OF_MESH = "of the mesh"
 
 
 @dataclass
@@ -44,8 +44,8 @@ class Model:
 
 def sampled(name, source, many, noise, lines=None):
     what = f"{many:,} points" + (f", noise of {noise:g} spacings" if noise else "") + (", lines given" if lines else "")
-    made = lambda mesh, made: clouds.sample(mesh, many, noise, made)
-    return Model(name, source, "cloud", made=made, lines=lines, what=what)
+    return Model(name, source, "cloud", lines=lines, what=what,
+                 made=lambda mesh, made: clouds.sample(mesh, many, noise, made))
 
 
 ABC = "abc-00000049"
@@ -90,21 +90,22 @@ def chosen(names, quick):
     return [model for model in wanted if not names or model.name in names or model.names() & files]
 
 
+def among_models(name):
+    """A file of the models; raises `clouds.Missing` where it is not."""
+    path = folder() / name
+    if not path.exists():
+        raise clouds.Missing(f"no {path.name} among the models")
+    return path
+
+
 def find(model, runs):
     """The input's path, made where it must be, and the options that go with it.
 
     Raises `clouds.Missing` with the reason why it is not there.
     """
-    source = folder() / model.source
-    options = list(model.options)
-    lines = folder() / model.lines if model.lines and model.lines != OF_MESH else None
-    for path in (source, lines):
-        if path is not None and not path.exists():
-            raise clouds.Missing(f"no {path.name} among the models")
-    if model.lines == OF_MESH:
-        lines = runs.lines(source)
-    if lines:
-        options += ["--edges", lines]
+    source, options = among_models(model.source), list(model.options)
+    if model.lines:
+        options += ["--edges", runs.lines(source) if model.lines == OF_MESH else among_models(model.lines)]
     if model.made is None:
         return source, options
     made = runs.work / "inputs" / f"{model.name}.ply"

@@ -259,6 +259,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::analyse::planted::{lay, side_by_side};
 
     #[test]
     fn wedges_without_sites_are_told() {
@@ -292,16 +293,9 @@ mod tests {
         let value = |n: u64| (super::super::canonical::mix(n) >> 40) as f32 / (1 << 23) as f32 - 1.0;
         let positions: Vec<Vec3> =
             (0..3000).map(|n| Vec3::new(value(2 * n), value(2 * n + 1), 0.0)).collect();
-        let nearest = super::super::nearest::Search::new(&positions).unwrap().nearest();
-        let spacing = super::super::nearest::spacing(&positions, &nearest);
+        let (_, nearest, spacing) = lay(&positions);
         let normals = vec![Vec3::Z; positions.len()];
-        let sites = Sites {
-            positions: &positions,
-            normals: &normals,
-            spacing: &spacing,
-            nearest: &nearest,
-            noise: 0.0,
-        };
+        let sites = side_by_side(&positions, &normals, &nearest, &spacing);
         let joined = sites.join(&Whole);
         for n in 0..4000 {
             let place = 0.9 * Vec3::new(value(90_000 + 2 * n), value(90_001 + 2 * n), 0.0);

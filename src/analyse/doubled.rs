@@ -7,7 +7,7 @@ use super::segment_grid::SegmentGrid;
 use super::surface::NONE;
 
 /// Two lines run beside each other where they keep within this cosine (25°) of the same way.
-const PARALLEL: f64 = 0.906;
+pub(super) const PARALLEL: f64 = 0.906;
 
 /// But not where they have parted just before by more than this (cosine of 10°): they bound a face that begins there.
 const FORK: f64 = 0.985;
@@ -132,6 +132,8 @@ fn arm(network: &Network, segment: u32, node: u32, reach: &impl Fn(DVec3) -> f64
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
 
     /// A network of straight lines in segments of 0.02.
@@ -176,15 +178,25 @@ mod tests {
             let (left, length) = merged(&fork);
             assert_eq!(left.segments.len() == network(&fork).segments.len(), stay, "{degrees}: {length}");
         }
-        // A loop so small that it has no end within reach.
-        let at = |n: f64| {
-            let (sin, cos) = libm::sincos(0.25 * std::f64::consts::TAU * n);
-            0.03 * DVec3::new(cos, sin, 0.0)
+    }
+
+    #[test]
+    fn an_arm_round_a_loop_ends() {
+        // Sixteen sides of 0.02, all within reach of a corner, from which a line leads into the loop beside the first.
+        let corner = |n: u32| {
+            let (sin, cos) = libm::sincos(f64::from(n % 16) * std::f64::consts::TAU / 16.0);
+            0.05 * DVec3::new(cos, sin, 0.0)
         };
-        let side = |n: f64| [at(n), at(n + 1.0)];
-        let tail = [at(0.0), at(0.0) + DVec3::new(-0.2, 0.14, 0.0)];
-        let (left, _) = merged(&[side(0.0), side(1.0), side(2.0), side(3.0), tail]);
-        assert!(!left.segments.is_empty());
+        let (sin, cos) = libm::sincos(118.0_f64.to_radians());
+        let beside = [corner(0), corner(0) + 0.2 * DVec3::new(cos, sin, 0.0)];
+        let lines: Vec<_> = (0..16).map(|n| [corner(n), corner(n + 1)]).chain([beside]).collect();
+        let network = network(&lines);
+        let at =
+            |place: DVec3| (0..).zip(&network.nodes).find(|(_, node)| node.as_dvec3().distance(place) < 1e-6);
+        let [from, to] = [corner(0), corner(1)].map(|place| at(place).unwrap().0);
+        let first = network.find([from, to].map(|node: u32| network.nodes[node as usize])).unwrap();
+        assert_eq!(arm(&network, first, from, &|_| 0.02).len(), LONGEST);
+        assert!(!forks(&network, &|_| 0.02).is_empty());
     }
 
     #[test]

@@ -360,6 +360,24 @@ fn halve(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analyse::planted::{lay, random, spaced};
+
+    #[test]
+    fn lines_closer_than_points_usually_lie_are_one_all_along() {
+        // A lattice of 0.02, and clumps of four points here and there between two lines.
+        let lattice =
+            (0..101 * 101).map(|n| 0.02 * Vec3::new((n % 101) as f32 - 50.0, (n / 101) as f32 - 50.0, 0.0));
+        let clumps = (0..36).map(|n| {
+            let (x, y) = (0.2 * f64::from(n / 4) - 0.79, 0.007);
+            (DVec3::new(x, y, 0.0) + 0.002 * DVec3::new(random(2 * n as u64), random(2 * n as u64 + 1), 0.0))
+                .as_vec3()
+        });
+        let positions: Vec<Vec3> = lattice.chain(clumps).collect();
+        let (search, _, spacing) = lay(&positions);
+        let line = |y: f64| vec![DVec3::new(-0.9, y, 0.0), DVec3::new(0.9, y, 0.0)];
+        let network = Network::new(&[line(0.0), line(0.014)], &spaced(&search, &positions, &spacing));
+        assert!(network.merged > 1.79, "{} of 1.8 gave way", network.merged);
+    }
 
     #[test]
     fn of_lines_that_meet_the_straightest_go_on_through_each_other() {

@@ -6,13 +6,11 @@
 use glam::DVec3;
 
 use super::cloud_graph::Sites;
+use super::doubled::PARALLEL;
 use super::line_network::Network;
 use super::line_sheets::{Beside, Sheet, window};
 use super::segment_grid::SegmentGrid;
 use super::surface::Rows;
-
-/// Two lines bound a strip where they keep within this cosine (25°) of the same way.
-const PARALLEL: f64 = 0.906;
 
 /// Strips wider than this many spacings show themselves.
 const WIDEST: f64 = 3.0;
@@ -110,7 +108,7 @@ mod tests {
 
     use super::*;
     use crate::analyse::line_sheets::Sheets;
-    use crate::analyse::planted::{lay, random, spaced};
+    use crate::analyse::planted::{lay, random, side_by_side, spaced};
 
     #[test]
     fn a_face_narrower_than_its_points_show_is_told_by_its_lines() {
@@ -138,13 +136,7 @@ mod tests {
         let lines = [line(DVec3::ZERO), line(DVec3::new(0.0, half, half))];
         let network = Network::new(&lines, &spaced(&search, &positions, &spacing));
         let normals = vec![Vec3::new(0.0, -1.0, 1.0).normalize(); positions.len()];
-        let sites = Sites {
-            positions: &positions,
-            normals: &normals,
-            spacing: &spacing,
-            nearest: &nearest,
-            noise: 0.0,
-        };
+        let sites = side_by_side(&positions, &normals, &nearest, &spacing);
         let sheets = Sheets::find(&network, &sites);
         let inner = (0..network.segments.len() as u32)
             .filter(|&segment| network.ends(segment).iter().all(|end| end.x.abs() < 0.7));

@@ -7,6 +7,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::spread::larger;
+
 /// Places from which the search starts.
 const STARTS: usize = 64;
 
@@ -63,7 +65,7 @@ pub(super) fn highest<P: Copy + Send + Sync, I: Iterator<Item = P>>(
         }
         (at, top)
     });
-    tops.reduce_with(|most, next| if next.1 > most.1 { next } else { most })
+    tops.reduce_with(larger)
 }
 
 /// Steps towards the faces, edges and corners of a cube, of a length along each axis.

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::point_grid::PointGrid;
+use super::spread::larger;
 use crate::model::asset::{Accuracy, Asset};
 use crate::model::splat::Splat;
 use crate::render::input::Model;
@@ -68,16 +69,13 @@ pub fn fit(points: &[Vec3], asset: &Asset, reach: f64) -> Fit {
         }
     });
     let distances = best.into_iter().map(|best| f64::from_bits(best.into_inner()));
-    let covered: Vec<(f64, Vec3)> = distances
-        .zip(points)
-        .filter(|found| found.0.is_finite())
-        .map(|(distance, &at)| (distance, at))
-        .collect();
-    let worst = covered.iter().copied().reduce(|most, next| if next.0 > most.0 { next } else { most });
-    let mut distances: Vec<f64> = covered.into_iter().map(|found| found.0).collect();
+    let found: Vec<(Vec3, f64)> =
+        points.iter().copied().zip(distances).filter(|found| found.1.is_finite()).collect();
+    let worst = found.iter().copied().reduce(larger).map(|worst| worst.0);
+    let mut distances: Vec<f64> = found.into_iter().map(|found| found.1).collect();
     distances.par_sort_unstable_by(f64::total_cmp);
     let uncovered = points.len() - distances.len();
-    Fit { uncovered, worst: worst.map(|found| found.1), accuracy: accuracy(&distances) }
+    Fit { uncovered, worst, accuracy: accuracy(&distances) }
 }
 
 /// The points a splat covers within `reach`, with their distances.

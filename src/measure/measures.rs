@@ -211,7 +211,7 @@ impl Measures {
         let more = if self.kind == MESH { &of_mesh[..] } else { &[] };
         for &(name, Distances { max, at, .. }, limit) in distances.iter().chain(more) {
             if max.is_nan() || max > limit {
-                let place = at.map(|at| format!(", at {}", place(at))).unwrap_or_default();
+                let place = at.map(|at| format!(", at {}", self.place(at))).unwrap_or_default();
                 faults.push(format!("{name} is {max:.3e} of the diagonal, more than {limit:.3e}{place}"));
             }
         }
@@ -226,6 +226,14 @@ impl Measures {
         faults
     }
 
+    /// A place for people, to a millionth of the diagonal.
+    #[must_use]
+    pub fn place(&self, [x, y, z]: [f64; 3]) -> String {
+        let magnitude = if self.diagonal > 0.0 { libm::log10(self.diagonal).floor() } else { 0.0 };
+        let decimals = (6.0 - magnitude).clamp(0.0, MOST_DECIMALS) as usize;
+        format!("({x:.decimals$}, {y:.decimals$}, {z:.decimals$})")
+    }
+
     /// The measures as indented JSON, ending in a line break.
     ///
     /// # Errors
@@ -236,11 +244,8 @@ impl Measures {
     }
 }
 
-/// A place for people.
-#[must_use]
-pub fn place([x, y, z]: [f64; 3]) -> String {
-    format!("({x:.6}, {y:.6}, {z:.6})")
-}
+/// Decimals of a place for people are at most these: of smaller models JSON tells every digit.
+const MOST_DECIMALS: f64 = 20.0;
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

@@ -35,10 +35,13 @@ pub(super) fn distances(samples: &[Sample]) -> Distances {
 pub(super) fn placed(samples: &[(DVec3, Sample)], top: Option<(DVec3, f64)>) -> Distances {
     let values: Vec<Sample> = samples.iter().map(|sample| sample.1).collect();
     let all = samples.iter().map(|&(at, (value, _))| (at, value)).chain(top);
-    // Of places as far off the first, whatever the machine.
-    let largest = all.reduce(|most, next| if next.1 > most.1 { next } else { most });
     let found = distances(&values);
-    largest.map_or(found, |(at, max)| Distances { max, at: Some(at.to_array()), ..found })
+    all.reduce(larger).map_or(found, |(at, max)| Distances { max, at: Some(at.to_array()), ..found })
+}
+
+/// The larger of two values with their places; of equal ones the first.
+pub(super) fn larger<P>(most: (P, f64), next: (P, f64)) -> (P, f64) {
+    if next.1 > most.1 { next } else { most }
 }
 
 /// The same of angles in degrees.

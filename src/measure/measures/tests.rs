@@ -42,6 +42,14 @@ fn measures_survive_their_json() {
 }
 
 #[test]
+fn places_are_told_to_a_millionth_of_the_diagonal() {
+    let place = |diagonal: f64| Measures { diagonal, ..sound() }.place([0.125 * diagonal; 3]);
+    for (diagonal, told) in [(8.0, "1.000000"), (8e6, "1000000"), (8e-4, "0.0001000000"), (0.0, "0.000000")] {
+        assert_eq!(place(diagonal), format!("({told}, {told}, {told})"));
+    }
+}
+
+#[test]
 fn each_broken_promise_is_one_fault() {
     assert_eq!(sound().faults(), Vec::<String>::new());
     type Plant = fn(&mut Measures);

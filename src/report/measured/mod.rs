@@ -4,7 +4,7 @@ mod page;
 
 use super::table::{Table, points};
 use crate::measure::Measures;
-use crate::measure::measures::{Distances, place};
+use crate::measure::measures::Distances;
 pub use page::write_page;
 
 /// The measures as lines of plain text, ending in a line break.
@@ -27,7 +27,7 @@ pub fn table(measures: &Measures) -> String {
 fn errors(text: &mut Table, measures: &Measures) {
     let distances = |d: &Distances| {
         let budgets = if measures.budget > 0.0 { d.max / measures.budget } else { 0.0 };
-        let at = d.at.map(|at| format!(" at {}", place(at))).unwrap_or_default();
+        let at = d.at.map(|at| format!(" at {}", measures.place(at))).unwrap_or_default();
         format!("rms {:.2e}, p99 {:.2e}, max {:.2e} ({budgets:.2} budgets){at}", d.rms, d.p99, d.max)
     };
     let uncovered = match measures.uncovered {
