@@ -175,8 +175,12 @@ impl Below {
         let over = |triangle: &[DVec3; 3]| {
             height_over(triangle, uv).is_some_and(|surface| budget.reaches(surface - height, 1.0))
         };
-        let beside = |triangle: &[DVec3; 3]| to_triangle(*triangle, uv.extend(height)).length() <= overhang;
-        self.triangles.iter().any(over) || (overhang > 0.0 && self.triangles.iter().any(beside))
+        self.triangles.iter().any(over) || (overhang > 0.0 && self.is_within(overhang, uv.extend(height)))
+    }
+
+    /// Whether a triangle comes so close to a place, in space.
+    pub(super) fn is_within(&self, reach: f64, place: DVec3) -> bool {
+        self.triangles.iter().any(|triangle| to_triangle(*triangle, place).length() <= reach)
     }
 }
 

@@ -77,6 +77,9 @@ const CUT_ALONG: [u32; 8] = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b
 /// short as one.
 const STEP: f64 = 0.25;
 
+/// A place is nearest to a corner if that is farther from it than the triangle by no more than rounding.
+const AT_CORNER: f64 = 1.0 + 1e-9;
+
 /// Steps along a radius at most.
 const MOST_STEPS: f64 = 512.0;
 
@@ -152,9 +155,9 @@ impl<'a> Triangle<'a> {
         chords.chain(arcs).any(|uv| self.beyond(uv) > most)
     }
 
-    /// Whether a chord along a line goes on farther beyond its side and all lines than cuts may: at an acute corner
-    /// the next chord may cut it off too late.
-    fn leaves_lines(&self, sides: &[usize], chords: &[Conic], region: &Region) -> bool {
+    /// Whether a chord goes on farther beyond the triangle and all lines than cuts may: along a line, or beyond a
+    /// corner on one where no surface is as near. At an acute corner the next chord may cut it off too late.
+    fn leaves_lines(&self, sides: &[usize], chords: &[Conic], region: &Region, below: &Below) -> bool {
         let local = |point: u32| self.pose.to_local(self.grower.surface.point(point));
         let lines: Vec<[DVec3; 2]> = border_sides(self.grower.surface, region)
             .into_iter()
@@ -163,8 +166,18 @@ impl<'a> Triangle<'a> {
         let most = self.grower.budget.clip.edge;
         let near = |place: DVec3| lines.iter().any(|&[a, b]| nearest_on(a, b, place).distance(place) <= most);
         let leaves = |uv: DVec2| self.beyond(uv) > most && !near(uv.extend(0.0));
-        let mut along_lines = (0..chords.len()).filter(|&chord| self.is_border(sides[chord]));
-        along_lines.any(|chord| self.bordering(chords, chord).any(leaves))
+        let stands_out = |uv: DVec2| self.is_past_line(uv) && !below.is_within(most, uv.extend(0.0));
+        (0..chords.len()).any(|chord| {
+            let along_line = self.is_border(sides[chord]);
+            self.bordering(chords, chord).any(|uv| leaves(uv) && (along_line || stands_out(uv)))
+        })
+    }
+
+    /// Whether the nearest of the triangle to a place beyond it is a corner on a line.
+    fn is_past_line(&self, uv: DVec2) -> bool {
+        let on_lines = self.corners.iter().filter(|&&corner| self.grower.surface.on_border(corner));
+        let nearest = on_lines.map(|&corner| self.flat(corner).distance(uv)).fold(f64::INFINITY, f64::min);
+        nearest <= self.beyond(uv) * AT_CORNER
     }
 
     fn touches_a_line(&self) -> bool {
@@ -224,18 +237,18 @@ impl<'a> Triangle<'a> {
         let near = |member: &Member| {
             !kept(member.local.truncate()) || self.grower.budget.reaches(member.local.z, 1.0)
         };
+        let below = Below::triangles(self.grower.surface, &self.pose, region.reached());
         region.members.iter().all(near)
             && !self.across(region).any(kept)
-            && self.is_backed(chords, region, is_cut)
-            && !self.leaves_lines(&chords.sides, &conics, region)
+            && self.is_backed(chords, &below, is_cut)
+            && !self.leaves_lines(&chords.sides, &conics, region, &below)
     }
 
     /// Whether the surface lies below the border of what chords leave: the ellipse and the chords
     /// themselves, but for where these run along the triangle.
-    fn is_backed(&self, chords: &Chords, region: &Region, is_cut: impl Fn(DVec2) -> bool) -> bool {
+    fn is_backed(&self, chords: &Chords, below: &Below, is_cut: impl Fn(DVec2) -> bool) -> bool {
         let budget = &self.grower.budget;
         let reach = budget.clip.reach();
-        let below = Below::triangles(self.grower.surface, &self.pose, region.reached());
         let beside_cut = |uv: DVec2| {
             chords.cut_along().any(|side| {
                 let [a, b] = [side, (side + 1) % 3].map(|n| self.flat(self.corners[n]));
@@ -382,5 +395,39 @@ mod tests {
         assert_eq!(chords(5.0, false), Some(0), "at hardly a fold");
         assert_eq!(chords(60.0, false), Some(1), "at a fold");
         assert_eq!(chords(0.0, true), Some(1), "at a line");
+    }
+
+    /// Whether chords along the sides of a facet that meet at an acute corner on a line go on too far beyond
+    /// that: the surface goes on behind the corner, folded up by this slope, or ends at its sides.
+    fn stands_out(behind: Option<f32>) -> bool {
+        let beside = [-1.3, -0.3, 0.3, 1.3].map(|angle| (angle, 0.0));
+        let behind = behind.into_iter().flat_map(|slope| [(2.5, slope), (3.7, slope)]);
+        let place = |(angle, slope): (f32, f32)| {
+            let (y, x) = angle.sin_cos();
+            20.0 * BOUND as f32 * Vec3::new(x, y, -slope * x.min(0.0))
+        };
+        let around = beside.into_iter().chain(behind).map(place);
+        let positions: Vec<Vec3> = std::iter::once(Vec3::ZERO).chain(around).collect();
+        let triangles = (1..positions.len() as u32 - 1).map(|k| [0, k, k + 1]).collect();
+        let welded = Welded { positions, triangles, ..Welded::default() };
+        let surface = split(&welded, &vec![false; Edges::of(&welded.triangles).edges.len()]);
+        // As far as the file's grids may widen a splat.
+        let wider = |splat: &Splat| splat.radii + QUANTIZE_SHARE * BOUND;
+        let round = |splat: &Splat| Some(Splat { radii: wider(splat), ..splat.clone() });
+        let grower = grower(&surface, &round);
+        let mut region = Region::new(surface.points.len());
+        let splat = over(&grower, 1, &mut region).unwrap().splat;
+        let triangle = Triangle::below(&splat, &grower, [0, 2, 3]);
+        assert!(region.gather(&surface, &triangle.pose, triangle.radii, &triangle.corners));
+        let chords = triangle.chords(0b111, &triangle.outline()).unwrap();
+        let below = Below::triangles(&surface, &triangle.pose, region.reached());
+        triangle.leaves_lines(&chords.sides, &triangle.conics(&chords.clips), &region, &below)
+    }
+
+    #[test]
+    fn chords_that_meet_beyond_a_corner_on_a_line_stay_near_it_or_the_surface() {
+        assert!(stands_out(None), "into the air");
+        assert!(!stands_out(Some(0.0)), "over a plane");
+        assert!(stands_out(Some(1.5)), "below a slope");
     }
 }
