@@ -77,11 +77,11 @@ const CUT_ALONG: [u32; 8] = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b
 /// short as one.
 const STEP: f64 = 0.25;
 
-/// A place is nearest to a corner if that is farther from it than the triangle by no more than rounding.
-const AT_CORNER: f64 = 1.0 + 1e-9;
-
 /// Steps along a radius at most.
 const MOST_STEPS: f64 = 512.0;
+
+/// A place is nearest to a corner if that is farther from it than the triangle by no more than rounding.
+const AT_CORNER: f64 = 1.0 + 1e-9;
 
 /// Chords along some sides of a triangle.
 struct Chords {
@@ -123,10 +123,11 @@ impl<'a> Triangle<'a> {
         if !region.gather(self.grower.surface, &self.pose, self.radii, &self.corners) {
             return all();
         }
+        let below = Below::triangles(self.grower.surface, &self.pose, region.reached());
         let ends = (0..3).filter(|&n| self.is_border(n)).map(|n| 1 << n).sum::<u32>();
         let fewer = CUT_ALONG.into_iter().filter(|cut| cut & ends == ends && *cut != 0b111);
         let mut chords = fewer.filter_map(|cut| self.chords(cut, &outline));
-        chords.find(|chords| self.will_do(chords, region)).map_or_else(all, |chords| chords.clips)
+        chords.find(|chords| self.will_do(chords, region, &below)).map_or_else(all, |chords| chords.clips)
     }
 
     /// Chords along all of its sides.
@@ -230,18 +231,17 @@ impl<'a> Triangle<'a> {
 
     /// Whether what chords along some of the sides leave has the surface below it, and reaches over
     /// no line.
-    fn will_do(&self, chords: &Chords, region: &Region) -> bool {
+    fn will_do(&self, chords: &Chords, region: &Region, below: &Below) -> bool {
         let conics = self.conics(&chords.clips);
         let is_cut = |uv: DVec2| conics.iter().any(|conic| conic.cuts(uv));
         let kept = |uv: DVec2| (uv / self.radii).length_squared() < 1.0 && !is_cut(uv);
         let near = |member: &Member| {
             !kept(member.local.truncate()) || self.grower.budget.reaches(member.local.z, 1.0)
         };
-        let below = Below::triangles(self.grower.surface, &self.pose, region.reached());
         region.members.iter().all(near)
             && !self.across(region).any(kept)
-            && self.is_backed(chords, &below, is_cut)
-            && !self.leaves_lines(&chords.sides, &conics, region, &below)
+            && self.is_backed(chords, below, is_cut)
+            && !self.leaves_lines(&chords.sides, &conics, region, below)
     }
 
     /// Whether the surface lies below the border of what chords leave: the ellipse and the chords
