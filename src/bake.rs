@@ -202,13 +202,15 @@ pub fn bake(
         splats,
     };
     clock.stage(progress, "seal");
-    for _ in 0..mendings {
+    for _ in 0..mendings.max(1) {
+        let followed = if options.clips == Clips::Partners { 0 } else { cover.follow(&grower, &regions) };
         let Faults { open, beside } = looking.faults(&asset(cover.splats()))?;
         let (taken, added) =
             (cover.withdraw(&grower, &regions, &beside), cover.seal(&grower, &regions, &open));
         choice.withdrawn += taken;
         choice.sealing += added;
-        if taken + added == 0 {
+        choice.following += followed;
+        if followed + taken + added == 0 {
             break;
         }
     }

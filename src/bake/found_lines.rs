@@ -8,7 +8,7 @@ use super::{feature_lines, input_lines, model_error};
 use crate::error::Result;
 use crate::ingest::Input;
 use crate::ingest::chain::chain;
-use crate::model::polyline::Polylines;
+use crate::model::polyline::{Polylines, straightened};
 
 /// Points nearer than this to the line between others, model units, are left out: they halve
 /// straight edges of the mesh, up to the rounding of 32 bits.
@@ -28,7 +28,7 @@ pub fn found_lines(input: &Input, options: &Options) -> Result<Polylines> {
     let found = feature_lines(input, &Edges::Auto, input_noise(input), options.edge_angle, max_error)?
         .unwrap_or_default();
     let lines = match input {
-        Input::Mesh(_) => cornered(&joined(&found)).iter().map(|line| straightened(line)).collect(),
+        Input::Mesh(_) => cornered(&joined(&found)).iter().map(|line| straightened(line, STRAIGHT)).collect(),
         Input::Cloud(_) => joined(&found),
     };
     Ok(input_lines(&lines, &frame))
@@ -68,28 +68,6 @@ fn cornered(lines: &[Vec<DVec3>]) -> Vec<Vec<DVec3>> {
     cut
 }
 
-/// A line without the points that lie straight between others (Douglas and Peucker 1973).
-fn straightened(line: &[DVec3]) -> Vec<DVec3> {
-    let mut kept = vec![false; line.len()];
-    kept[0] = true;
-    kept[line.len() - 1] = true;
-    let mut open = vec![(0, line.len() - 1)];
-    while let Some((from, to)) = open.pop() {
-        let (a, b) = (line[from], line[to]);
-        let along = (b - a).normalize_or_zero();
-        let off = |n: &usize| {
-            let way = line[*n] - a;
-            (way - way.dot(along) * along).length()
-        };
-        let farthest = (from + 1..to).max_by(|m, n| off(m).total_cmp(&off(n)));
-        if let Some(at) = farthest.filter(|at| off(at) > STRAIGHT) {
-            kept[at] = true;
-            open.extend([(from, at), (at, to)]);
-        }
-    }
-    line.iter().zip(kept).filter(|(_, kept)| *kept).map(|(place, _)| *place).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,7 +82,7 @@ mod tests {
             segments.extend((0..8).map(|k| vec![at(k + 1), at(k)]));
         }
         let lines: Vec<Vec<DVec3>> =
-            cornered(&joined(&segments)).iter().map(|line| straightened(line)).collect();
+            cornered(&joined(&segments)).iter().map(|line| straightened(line, STRAIGHT)).collect();
         // A loop has no end; the walk begins at its least place, a corner.
         assert_eq!(lines.len(), 4, "{lines:?}");
         for line in &lines {
@@ -120,6 +98,6 @@ mod tests {
         };
         let segments: Vec<Vec<DVec3>> = (0..100).map(|n| vec![at(n), at(n + 1)]).collect();
         let lines = cornered(&joined(&segments));
-        assert_eq!((lines.len(), straightened(&lines[0]).len()), (1, 101));
+        assert_eq!((lines.len(), straightened(&lines[0], STRAIGHT).len()), (1, 101));
     }
 }

@@ -390,6 +390,7 @@ fn choice(baked: &Baked) -> report::Choice {
         candidates: baked.choice.candidates as u64,
         redundant: baked.choice.redundant as u64,
         merged: baked.choice.merged as u64,
+        following: baked.choice.following as u64,
         sealing: baked.choice.sealing as u64,
         withdrawn: baked.choice.withdrawn as u64,
         last_resorts: baked.choice.last_resorts as u64,

@@ -25,6 +25,30 @@ pub fn nearest_on(a: DVec3, b: DVec3, place: DVec3) -> DVec3 {
     if length > 0.0 { a + along * ((place - a).dot(along) / length).clamp(0.0, 1.0) } else { a }
 }
 
+/// A line without the points that lie between others, no farther than this off a straight line through those
+/// (Douglas and Peucker 1973); at least two points.
+#[must_use]
+pub fn straightened(line: &[DVec3], most: f64) -> Vec<DVec3> {
+    let mut kept = vec![false; line.len()];
+    kept[0] = true;
+    kept[line.len() - 1] = true;
+    let mut open = vec![(0, line.len() - 1)];
+    while let Some((from, to)) = open.pop() {
+        let (a, b) = (line[from], line[to]);
+        let along = (b - a).normalize_or_zero();
+        let off = |n: &usize| {
+            let way = line[*n] - a;
+            (way - way.dot(along) * along).length()
+        };
+        let farthest = (from + 1..to).max_by(|m, n| off(m).total_cmp(&off(n)));
+        if let Some(at) = farthest.filter(|at| off(at) > most) {
+            kept[at] = true;
+            open.extend([(from, at), (at, to)]);
+        }
+    }
+    line.iter().zip(kept).filter(|(_, kept)| *kept).map(|(place, _)| *place).collect()
+}
+
 impl Polylines {
     /// Number of segments over all lines.
     #[must_use]

@@ -139,6 +139,9 @@ pub struct Choice {
     pub redundant: u64,
     /// Splats saved by moving and merging them.
     pub merged: u64,
+    /// Splats added where no other is cut along a line.
+    #[serde(default)]
+    pub following: u64,
     /// Splats added to close holes that views of a mesh showed.
     #[serde(default)]
     pub sealing: u64,

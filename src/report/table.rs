@@ -125,6 +125,9 @@ impl Table {
             "chosen from",
             format!("{candidates} candidates over {samples} samples, {redundant} redundant, {merged} merged"),
         );
+        if choice.following > 0 {
+            self.row("added", format!("{} splats along lines that no other is cut along", choice.following));
+        }
         if choice.sealing > 0 {
             self.row("added", format!("{} splats that close holes seen from the side", choice.sealing));
         }

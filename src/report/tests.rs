@@ -107,6 +107,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         candidates: 20,
         redundant: 3,
         merged: 4,
+        following: 6,
         sealing: 5,
         withdrawn: 2,
         last_resorts: 1,

@@ -50,6 +50,8 @@ pub struct Choice {
     pub redundant: usize,
     /// Splats saved by moving and merging them, before the choice is made anew.
     pub merged: usize,
+    /// Splats added where lines were followed by none.
+    pub following: usize,
     /// Splats added to close holes that show where the rest is looked at from the side.
     pub sealing: usize,
     /// Splats taken out, and others put in their places, because they show beside the outline.

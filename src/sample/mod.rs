@@ -11,6 +11,7 @@ pub mod edge_cases;
 pub mod enclose;
 mod exchange;
 pub mod facet;
+mod follow;
 mod gain;
 pub mod grow;
 pub mod lower_bound;

@@ -17,6 +17,11 @@ impl Owners {
         Self(Rows::placed(cover.times.len(), || cover.chosen.iter().flat_map(owned)))
     }
 
+    /// Those of a piece.
+    pub(super) fn of_piece(&self, piece: u32) -> &[u32] {
+        self.0.row(piece)
+    }
+
     /// For each candidate of the cover, the pieces that it alone covers, ascending; none if it is not chosen.
     pub(super) fn alone(&self, cover: &Cover) -> Rows {
         let pieces = 0..cover.times.len() as u32;

@@ -13,9 +13,11 @@ use super::polygon;
 use super::region::Region;
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
+use crate::analyse::surface::Surface;
 use crate::model::sight::Sight;
+use crate::model::splat::Splat;
 
-/// Rays for which splats are grown side by side before it is seen which rays are still open. Batches are
+/// Tasks for which splats are grown side by side before it is seen which are still open. Batches are
 /// of the same size whatever the threads, so that the result is the same too.
 const BATCH: usize = 16;
 
@@ -23,68 +25,84 @@ const BATCH: usize = 16;
 /// a ray that grazes the surface. Below these, rounding takes what is left.
 const NEARER: [f64; 3] = [1.0, 0.5, 0.25];
 
+/// What some splat has to do.
+pub trait Task: Sync {
+    /// Whether a splat does it.
+    fn is_done_by(&self, splat: &Splat) -> bool;
+    /// The piece that one would cover which does it, if there is any.
+    fn piece(&self, surface: &Surface) -> Option<u32>;
+}
+
+impl Task for Sight {
+    fn is_done_by(&self, splat: &Splat) -> bool {
+        self.is_stopped(splat)
+    }
+
+    /// That nearest to where the ray meets the surface.
+    fn piece(&self, surface: &Surface) -> Option<u32> {
+        let distance = |piece: u32| surface.middle(piece).distance_squared(self.at);
+        (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+    }
+}
+
 impl Cover {
-    /// Adds the cheapest splats known that stop some rays, which none of the chosen does once stored, or
-    /// such as grow where the rays meet the surface; how many. A ray that not even these stop stays open.
-    pub fn seal(&mut self, grower: &Grower, regions: &Regions, sights: &[Sight]) -> usize {
-        if sights.is_empty() {
+    /// Adds the cheapest splats known that do some tasks, such as to stop rays, which none of the chosen does
+    /// once stored, or such as grow where the tasks lie; how many. A task that not even these do stays open.
+    pub fn seal<T: Task>(&mut self, grower: &Grower, regions: &Regions, tasks: &[T]) -> usize {
+        if tasks.is_empty() {
             return 0;
         }
-        let mut stopped = self.stopped_by_others(sights);
-        let mut open = unstopped(&stopped, sights.len());
+        let mut done = self.done_by_others(tasks);
+        let mut open = undone(&done, tasks.len());
         while !open.is_empty() {
             let batch = open.split_off(open.len().saturating_sub(BATCH));
             let grown: Vec<Option<Candidate>> =
-                batch.par_iter().map(|&sight| self.grown_at(grower, regions, &sights[sight])).collect();
+                batch.par_iter().map(|&task| self.grown_at(grower, regions, &tasks[task])).collect();
             for candidate in grown.into_iter().flatten() {
-                open.retain(|&sight| !sights[sight].is_stopped(&candidate.splat));
-                stopped.push((self.candidates.len(), stopped_by(&candidate, sights)));
+                open.retain(|&task| !tasks[task].is_done_by(&candidate.splat));
+                done.push((self.candidates.len(), done_by(&candidate, tasks)));
                 self.candidates.push(candidate);
             }
         }
-        let added = self.cheapest(&stopped, sights.len());
+        let added = self.cheapest(&done, tasks.len());
         for &index in &added {
             self.add(index);
         }
         added.len()
     }
 
-    /// Candidates that are not chosen, each with the rays it stops, ascending, if any.
-    fn stopped_by_others(&self, sights: &[Sight]) -> Vec<(usize, Vec<u32>)> {
+    /// Candidates that are not chosen, each with the tasks it does, ascending, if any.
+    fn done_by_others<T: Task>(&self, tasks: &[T]) -> Vec<(usize, Vec<u32>)> {
         let mut chosen = vec![false; self.candidates.len()];
         self.chosen.iter().for_each(|&index| chosen[index] = true);
         let others = self.candidates.par_iter().enumerate().filter(|&(index, _)| !chosen[index]);
         others
-            .map(|(index, candidate)| (index, stopped_by(candidate, sights)))
-            .filter(|(index, stopped)| !stopped.is_empty() && self.is_inside(&self.candidates[*index]))
+            .map(|(index, candidate)| (index, done_by(candidate, tasks)))
+            .filter(|(index, done)| !done.is_empty() && self.is_inside(&self.candidates[*index]))
             .collect()
     }
 
-    /// A splat grown where a ray meets the surface, the largest that stops the ray, or else one over the
-    /// piece there alone.
-    fn grown_at(&self, grower: &Grower, regions: &Regions, sight: &Sight) -> Option<Candidate> {
-        let surface = grower.surface;
-        let distance = |piece: u32| surface.middle(piece).distance_squared(sight.at);
-        let nearest =
-            (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-        let serves = |made: &Candidate| sight.is_stopped(&made.splat) && self.is_inside(made);
-        let made = |make: Make| made_within(&NEARER, grower, regions, (make, nearest), serves);
+    /// A splat grown where a task lies, the largest that does it, or else one over the piece there alone.
+    fn grown_at<T: Task>(&self, grower: &Grower, regions: &Regions, task: &T) -> Option<Candidate> {
+        let piece = task.piece(grower.surface)?;
+        let serves = |made: &Candidate| task.is_done_by(&made.splat) && self.is_inside(made);
+        let made = |make: Make| made_within(&NEARER, grower, regions, (make, piece), serves);
         made(grown).or_else(|| made(polygon::over))
     }
 }
 
-/// The rays that a candidate stops, ascending.
-fn stopped_by(candidate: &Candidate, sights: &[Sight]) -> Vec<u32> {
-    let numbered = (0_u32..).zip(sights);
-    numbered.filter(|(_, sight)| sight.is_stopped(&candidate.splat)).map(|(n, _)| n).collect()
+/// The tasks that a candidate does, ascending.
+fn done_by<T: Task>(candidate: &Candidate, tasks: &[T]) -> Vec<u32> {
+    let numbered = (0_u32..).zip(tasks);
+    numbered.filter(|(_, task)| task.is_done_by(&candidate.splat)).map(|(n, _)| n).collect()
 }
 
-/// The rays that no candidate stops, strewn: those next to each other pass through one hole.
-fn unstopped(stopped: &[(usize, Vec<u32>)], sights: usize) -> Vec<usize> {
-    let mut open = vec![true; sights];
-    stopped.iter().flat_map(|(_, stopped)| stopped).for_each(|&sight| open[sight as usize] = false);
-    let mut open: Vec<usize> = (0..sights).filter(|&sight| open[sight]).collect();
-    open.sort_unstable_by_key(|&sight| mix(sight as u64));
+/// The tasks that no candidate does, strewn: one splat may do those next to each other.
+fn undone(done: &[(usize, Vec<u32>)], tasks: usize) -> Vec<usize> {
+    let mut open = vec![true; tasks];
+    done.iter().flat_map(|(_, done)| done).for_each(|&task| open[task as usize] = false);
+    let mut open: Vec<usize> = (0..tasks).filter(|&task| open[task]).collect();
+    open.sort_unstable_by_key(|&task| mix(task as u64));
     open
 }
 
@@ -113,9 +131,8 @@ pub(super) fn made_within(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::analyse::surface::{NONE, Rows, Spot, Surface};
+    use crate::analyse::surface::{NONE, Rows, Spot};
     use crate::fit::clip::Clips;
-    use crate::model::splat::Splat;
     use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
     use glam::{DVec2, DVec3, Vec3};
