@@ -34,8 +34,7 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     let points = corners.map(|corner| surface.point(corner));
     let middle = surface.middle(piece);
     let mean: DVec3 = corners.iter().map(|&corner| surface.normal(corner)).sum();
-    let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or(mean);
-    let pose = Pose::at(middle, normal);
+    let pose = Pose::at(middle, upright(points, mean));
     // A point of a cloud may be stood for by another, which its disc need not reach.
     let is_spot = corners[0] == corners[1];
     let (pose, radii) = if let Some(Shaped { pose, radii }) = Shaped::over(surface, piece, &pose) {
@@ -64,6 +63,18 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     // What ends at a triangle's own sides is cut by itself, whatever lies across.
     let end_clips = splat.clips.clone();
     Some(Candidate { splat, end_clips, last_resort: true, pieces: vec![piece], rank: 3 })
+}
+
+/// The direction across a triangle; for corners in a line, the one across that line that is nearest to another.
+fn upright([a, b, c]: [DVec3; 3], other: DVec3) -> DVec3 {
+    let sides = [b - a, c - b, a - c];
+    let longest = sides.into_iter().fold(DVec3::ZERO, |most, side| {
+        if side.length_squared() > most.length_squared() { side } else { most }
+    });
+    let in_line = longest.try_normalize().map_or(other, |along| {
+        other.reject_from_normalized(along).normalize_or(along.any_orthonormal_vector())
+    });
+    sides[0].cross(-sides[2]).normalize_or(in_line)
 }
 
 /// Shares of the padding that a triangle cut along its sides is tried with where all of it would reach
@@ -422,6 +433,19 @@ mod tests {
         let chords = triangle.chords(0b111, &triangle.outline()).unwrap();
         let below = Below::triangles(&surface, &triangle.pose, region.reached());
         triangle.leaves_lines(&chords.sides, &triangle.conics(&chords.clips), &region, &below)
+    }
+
+    #[test]
+    fn a_triangle_without_an_inside_lies_along_its_splat() {
+        let positions = vec![Vec3::ZERO, Vec3::new(0.0, 0.0, 3.0), Vec3::new(0.0, 0.0, 9.0)];
+        let welded = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
+        let surface = split(&welded, &vec![false; Edges::of(&welded.triangles).edges.len()]);
+        let round = |splat: &Splat| Some(splat.clone());
+        let splat = over(&grower(&surface, &round), 0, &mut Region::new(surface.points.len())).unwrap().splat;
+        for corner in surface.pieces[0] {
+            let local = splat.to_local(surface.point(corner));
+            assert!(local.z.abs() < 1e-9 && splat.ellipse(local.truncate()) < 1.0 + 1e-9, "{local}");
+        }
     }
 
     #[test]
