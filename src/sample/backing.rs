@@ -48,6 +48,8 @@ pub struct Backing<'a> {
     outer: DVec2,
     curvature: DVec2,
     below: Below,
+    /// The surface along the lines that the region reaches.
+    along_lines: Below,
     /// For places at equal angles around the rim over a cloud, whether one of its points is in reach.
     near: Vec<bool>,
 }
@@ -72,7 +74,12 @@ impl<'a> Backing<'a> {
         let (budget, overhang) = (&grower.budget, grower.overhang);
         let cloud = !below.points.is_empty();
         let near = if cloud { below.near_rim(outer, budget.pad) } else { Vec::new() };
-        Self { budget, overhang, outer, curvature, below, near }
+        let on_line = |point: &u32| grower.surface.on_border(*point);
+        let along_lines = match grower.surface.spots.is_empty() {
+            true => Below::triangles(grower.surface, pose, region.reached().filter(on_line)),
+            false => Below::default(),
+        };
+        Self { budget, overhang, outer, curvature, below, along_lines, near }
     }
 
     /// Whether, at every place around the rim that clip curves do not cut away, the surface lies within
@@ -92,7 +99,9 @@ impl<'a> Backing<'a> {
         let places = rim_places(self.outer, self.budget.rim).chain(between_cuts(clips, self.outer));
         places.filter(|&uv| !cut(uv)).all(|uv| {
             let height = (self.curvature * uv * uv).element_sum();
-            self.below.near(uv, height, self.budget, self.overhang) || beside_cut(uv)
+            // Where the curve that cuts beside it lies beyond the ellipse, there may be no line near.
+            let is_close = || self.along_lines.is_within(self.budget.rim, uv.extend(height));
+            self.below.near(uv, height, self.budget, self.overhang) || (beside_cut(uv) && is_close())
         })
     }
 }
@@ -265,5 +274,20 @@ mod tests {
         assert!(near(-0.1, 0.2, 0.0) && !near(-0.1, 0.3, 0.0), "over it the rim's budget counts");
         assert!(near(-0.1, -0.3, 0.0) && !near(-0.1, -0.5, 0.0), "it may sink by more");
         assert!(!near(0.3, 0.0, 0.0) && near(0.3, 0.39, 0.5) && !near(0.3, 0.41, 0.5), "beside it, space");
+    }
+
+    #[test]
+    fn what_a_curve_would_cut_beyond_a_needle_is_no_excuse_for_its_end() {
+        let budget = Budget::new(0.1, Clips::Curved);
+        // Nearly all of what it cuts lies above the ellipse, and goes on along all of that.
+        let clip = ClipCurve { alpha1: 2.917, alpha3: 2.956, p2: DVec2::new(-0.344, 0.075), rho: 1.0 };
+        let holds = |apex: f64| {
+            let wedge = [DVec3::new(apex, 0.0, 0.0), DVec3::new(1.4, -1.5, 0.0), DVec3::new(1.4, 1.5, 0.0)];
+            let [below, along_lines] = [(); 2].map(|()| Below { triangles: vec![wedge], ..Below::default() });
+            let outer = DVec2::new(0.575, 0.06);
+            let (overhang, curvature, near) = (0.0, DVec2::ZERO, Vec::new());
+            Backing { budget: &budget, overhang, outer, curvature, below, along_lines, near }.holds(&[clip])
+        };
+        assert!(holds(-0.5) && !holds(-0.313));
     }
 }
