@@ -25,8 +25,8 @@ pub fn nearest_on(a: DVec3, b: DVec3, place: DVec3) -> DVec3 {
     if length > 0.0 { a + along * ((place - a).dot(along) / length).clamp(0.0, 1.0) } else { a }
 }
 
-/// A line without the points that lie between others, no farther than this off a straight line through those
-/// (Douglas and Peucker 1973); at least two points.
+/// A line of at least one point without those that lie between others, no farther than `most` off the straight
+/// line through these (Douglas and Peucker 1973).
 #[must_use]
 pub fn straightened(line: &[DVec3], most: f64) -> Vec<DVec3> {
     let mut kept = vec![false; line.len()];

@@ -73,9 +73,9 @@ impl Cover {
         let passed = |place: &Followed, by: usize| {
             place.is_near(&self.candidates[by].splat) && passes(&bordered[by], place.at, stored.edge)
         };
-        // Some places of a line may have no points.
-        let places_of = surface.places.iter().max().map_or(0, |&most| most as usize + 1);
-        let (owners, joined) = (Owners::of(self), Rows::grouped(places_of, &surface.places));
+        // Not every place has a point: there may be more of them.
+        let count = surface.places.iter().max().map_or(0, |&last| last as usize + 1);
+        let (owners, joined) = (Owners::of(self), Rows::grouped(count, &surface.places));
         let of_side = |from: u32| {
             let beside = beside(surface, &owners, &joined, from);
             let is_bare = move |place: &Followed| !beside.iter().any(|&by| passed(place, by as usize));
@@ -107,10 +107,7 @@ fn borders(splat: &Splat, tolerance: f64) -> Vec<[DVec3; 2]> {
     let mut found = Vec::new();
     for (own, conic) in conics.iter().enumerate() {
         let cuts = |uv: DVec2| conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(uv));
-        let place = |uv: DVec2| {
-            let height = (splat.curvature * uv * uv).element_sum();
-            (holds(uv, splat.radii) && !cuts(uv)).then(|| splat.to_model(uv.extend(height)))
-        };
+        let place = |uv: DVec2| (holds(uv, splat.radii) && !cuts(uv)).then(|| splat.surface_point(uv));
         let places: Vec<Option<DVec3>> = conic.walk(STEP * tolerance).into_iter().map(place).collect();
         for run in places.split(Option::is_none).filter(|run| !run.is_empty()) {
             let run: Vec<DVec3> = run.iter().flatten().copied().collect();

@@ -1,6 +1,7 @@
 //! Which splats: grow a domain around each seed, cover every piece of the surface, drop what
 //! became redundant, move and merge what is left, choose anew from all that were grown, lay out others
-//! for shares that neighbours exchange, shrink each to its own share, mend what shows from the side.
+//! for shares that neighbours exchange, shrink each to its own share, follow the lines that
+//! none follows, mend what shows from the side.
 
 pub mod backing;
 pub mod budget;
