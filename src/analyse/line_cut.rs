@@ -4,6 +4,8 @@
 //! borders meet they are linked as the sheet goes on from one to the next, round corners too;
 //! linked ends are one point, unlinked ends points of their own.
 
+mod gaps;
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -13,6 +15,7 @@ use super::line_sheets::{Sheet, Sheets, too_near};
 use super::nearest::listed;
 use super::orient::Across;
 use super::segment_grid::SegmentGrid;
+use super::strips::put_among;
 use super::surface::NONE;
 use crate::model::discs::End;
 use crate::model::polyline::nearest_on;
@@ -98,6 +101,22 @@ impl LineCut {
     #[must_use]
     pub fn new(network: Network, sites: &Sites) -> Self {
         let sheets = Sheets::find(&network, sites);
+        let cut = Self::of(network, sheets);
+        let gaps = cut.gaps(sites);
+        if gaps.is_empty() { cut } else { cut.with(gaps) }
+    }
+
+    /// The same with more sheets at some segments.
+    fn with(self, more: Vec<(u32, Sheet)>) -> Self {
+        let Self { network, mut sheets, .. } = self;
+        for (segment, sheet) in more {
+            put_among(&mut sheets.of[segment as usize], network.along(segment), sheet);
+        }
+        Self::of(network, sheets)
+    }
+
+    /// The borders of sheets along a network.
+    fn of(network: Network, sheets: Sheets) -> Self {
         let (mut borders, mut first_border) = (Vec::new(), Vec::new());
         for (segment, found) in (0_u32..).zip(&sheets.of) {
             first_border.push(borders.len() as u32);

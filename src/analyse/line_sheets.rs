@@ -37,7 +37,7 @@ const SHARP: f64 = 0.5;
 
 /// Segments on either side, along the line, whose points vote too: four to eight spacings,
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
-const WINDOW: usize = 8;
+pub(super) const WINDOW: usize = 8;
 
 /// A point's nearest place on a line is where the line ends if it lies within this share of its distance from
 /// there (11°): a line's last segment may slant a little, and face points that lie past its end.
@@ -48,7 +48,7 @@ const AT_END: f64 = 0.2;
 const ALIGNED: f64 = 0.866;
 
 /// Directions farther apart than this (25°) belong to different sheets.
-const SEPARATE: f64 = 0.436;
+pub(super) const SEPARATE: f64 = 0.436;
 
 /// Votes count as of one direction within this (10°).
 const WITHIN: f64 = 0.175;
@@ -302,6 +302,14 @@ fn clusters(votes: &[(f64, u32)]) -> Vec<Vec<u32>> {
     found
 }
 
+/// Sorts points by how near they are to the middle of a segment.
+pub(super) fn nearest_first(network: &Network, sites: &Sites, segment: u32, points: &mut [u32]) {
+    let [a, b] = network.ends(segment);
+    let middle = 0.5 * (a + b);
+    let distance = |point: u32| sites.positions[point as usize].as_dvec3().distance_squared(middle);
+    points.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b)));
+}
+
 /// The sheet that some points show.
 fn sheet(
     network: &Network,
@@ -311,10 +319,7 @@ fn sheet(
     mut points: Vec<u32>,
 ) -> Option<Sheet> {
     let along = network.along(segment);
-    let [a, b] = network.ends(segment);
-    let middle = 0.5 * (a + b);
-    let distance = |point: u32| sites.positions[point as usize].as_dvec3().distance_squared(middle);
-    points.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b)));
+    nearest_first(network, sites, segment, &mut points);
     let directions = points.iter().filter_map(|&point| beside[point as usize].as_ref());
     let sum: DVec3 = directions.map(|b| b.offset.reject_from_normalized(along).normalize_or_zero()).sum();
     let inward = sum.try_normalize()?;

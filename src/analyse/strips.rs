@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::cloud_graph::Sites;
 use super::doubled::PARALLEL;
 use super::line_network::Network;
-use super::line_sheets::{Beside, Sheet, window};
+use super::line_sheets::{Beside, Sheet, nearest_first, window};
 use super::segment_grid::SegmentGrid;
 use super::surface::Rows;
 
@@ -56,7 +56,7 @@ impl<'a> Strips<'a> {
         let beside = |other: u32| {
             self.strand[other as usize] != own && self.network.along(other).dot(along).abs() > PARALLEL
         };
-        let around = self.around(segment, middle);
+        let around = self.around(segment);
         let near = self.grid.nearest_of(middle, WIDEST * self.spacing(&around), beside)?;
         let way = near.point - middle;
         let across = way.reject_from_normalized(along);
@@ -79,11 +79,10 @@ impl<'a> Strips<'a> {
     }
 
     /// The points beside a segment and those that carry it on, the nearest to its middle first.
-    fn around(&self, segment: u32, middle: DVec3) -> Vec<u32> {
+    fn around(&self, segment: u32) -> Vec<u32> {
         let near = window(self.network, segment).into_iter().flat_map(|near| self.points.row(near));
         let mut points: Vec<u32> = near.copied().collect();
-        let away = |point: u32| self.sites.positions[point as usize].as_dvec3().distance_squared(middle);
-        points.sort_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
+        nearest_first(self.network, self.sites, segment, &mut points);
         points
     }
 

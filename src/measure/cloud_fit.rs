@@ -80,18 +80,20 @@ impl<'a> CloudFit<'a> {
     ///
     /// An open disc reaches a margin farther than it stands for the surface, since so much is not known.
     /// What stands out past the cloud's border is seen as far as it stands out farther than that. Where
-    /// another sheet passes nearby, turned otherwise, its fits count too, up to the nearest over whose disc
-    /// the place lies.
+    /// other sheets pass nearby, turned otherwise, their fits count too, those of each up to the nearest over
+    /// whose disc the place lies: at a corner, points of two faces may be nearer than any of the third.
     pub(super) fn distance(&self, place: DVec3) -> f64 {
         let near = self.nearest(place.as_vec3().to_array(), ASKED);
         let Some((&nearest, others)) = near.split_first() else { return f64::INFINITY };
         let Off { mut distance, over } = self.fit(nearest).off(place);
-        for &point in others.iter().filter(|&&point| !over || !self.agree(nearest, point)) {
+        let mut told: Vec<u32> = over.then_some(nearest).into_iter().collect();
+        for &point in others {
+            if told.iter().any(|&other| self.agree(other, point)) {
+                continue;
+            }
             let off = self.fit(point).off(place);
             distance = distance.min(off.distance);
-            if over && off.over {
-                break;
-            }
+            told.extend((over && off.over).then_some(point));
         }
         distance
     }
@@ -249,6 +251,23 @@ mod tests {
         let fit = CloudFit::new(&points, &discs).unwrap();
         let on_wall = fit.distance(DVec3::new(0.0, 0.02, 0.14));
         assert!(on_wall < 1e-6, "{on_wall}");
+    }
+
+    #[test]
+    fn at_a_corner_the_third_face_counts_where_points_of_two_are_nearer() {
+        let out = [Vec3::X, Vec3::Y, Vec3::Z];
+        // The nearest of each face, that of the third farther from a place on it than those of the others.
+        let nearest =
+            [Vec3::new(0.0, -0.02, -0.01), Vec3::new(-0.01, 0.0, -0.02), Vec3::new(-0.03, -0.03, 0.0)];
+        let others =
+            [1, 2].map(|turn| [0, 1, 2].map(|face: usize| nearest[face] - 0.2 * out[(face + turn) % 3]));
+        let points = [nearest, others[0], others[1]].concat();
+        let disc = |n: usize| Disc { normal: out[n % 3], margin: 0.05, ..Disc::default() };
+        let discs = Discs::new((0..9).map(disc).collect(), &[]);
+        let fit = CloudFit::new(&points, &discs).unwrap();
+        let found = fit.distance(DVec3::new(-0.008, -0.01, 0.0));
+        assert!(found < 1e-6, "{found}");
+        assert!(fit.distance(DVec3::new(-0.008, -0.01, -0.005)) > 0.004, "inside, all are off");
     }
 
     #[test]

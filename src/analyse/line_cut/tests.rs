@@ -236,3 +236,54 @@ fn a_cube_falls_into_six_loops() {
     assert!(ends.iter().enumerate().all(|(n, end)| end.1 == n as u32));
     assert_eq!(cut.points.len(), 2 * (nodes - 8) + 24);
 }
+
+#[test]
+fn a_sheet_that_shows_on_both_sides_of_a_short_gap_goes_on_through_it_and_round_a_corner() {
+    let (positions, normals) = cube(1500);
+    let (search, nearest, spacing) = lay(&positions);
+    let sites = side_by_side(&positions, &normals, &nearest, &spacing);
+    let network = Network::new(&edges(), &spaced(&search, &positions, &spacing));
+    let whole = LineCut::new(network.clone(), &sites);
+    let corner = DVec3::splat(0.5);
+    // The sheet of the upper face, along its edges that meet at a corner.
+    let is_of = |segment: u32, sheet: &Sheet| {
+        sheet.normal.z > 0.9 && network.ends(segment).iter().all(|end| end.z > 0.4)
+    };
+    let lacking = |reach: f64, on: &dyn Fn(u32) -> bool| {
+        let mut sheets = whole.sheets.clone();
+        let near = (0..network.segments.len() as u32)
+            .filter(|&n| network.ends(n).iter().all(|end| end.distance(corner) < reach));
+        let near: Vec<u32> =
+            near.filter(|&n| on(n) && sheets.of[n as usize].iter().any(|sheet| is_of(n, sheet))).collect();
+        near.iter().for_each(|&n| sheets.of[n as usize].retain(|sheet| !is_of(n, sheet)));
+        (near, LineCut::of(network.clone(), sheets))
+    };
+    let fills = |near: &[u32], cut: LineCut| {
+        let gaps = cut.gaps(&sites);
+        for (segment, sheet) in &gaps {
+            let own = whole.sheets.of[*segment as usize].iter().find(|own| is_of(*segment, own)).unwrap();
+            assert!(
+                own.inward.dot(sheet.inward) > 0.999 && own.normal.dot(sheet.normal) > 0.999,
+                "{sheet:?}"
+            );
+            assert!(
+                sheet.points.iter().all(|&point| positions[point as usize].z > 0.499),
+                "its points lie on it"
+            );
+        }
+        let mut filled: Vec<u32> = gaps.iter().map(|gap| gap.0).collect();
+        filled.sort_unstable();
+        assert_eq!(filled, near);
+        let mended = cut.with(gaps);
+        assert_eq!(mended.loose(), (Vec::new(), Vec::new()));
+        assert_eq!(mended.points.len(), whole.points.len());
+    };
+    // On one edge alone, from the corner on, and on both.
+    let one = lacking(0.12, &|segment| network.along(segment).x.abs() > 0.9);
+    let both = lacking(0.06, &|_| true);
+    assert!((3..=8).contains(&one.0.len()) && (3..=8).contains(&both.0.len()), "{one:?} {both:?}");
+    fills(&one.0, one.1);
+    fills(&both.0, both.1);
+    // A gap longer than points along a line may be lacking is one of the surface.
+    assert!(lacking(0.6, &|_| true).1.gaps(&sites).is_empty());
+}
