@@ -110,7 +110,11 @@ impl LineCut {
     fn with(self, more: Vec<(u32, Sheet)>) -> Self {
         let Self { network, mut sheets, .. } = self;
         for (segment, sheet) in more {
-            put_among(&mut sheets.of[segment as usize], network.along(segment), sheet);
+            let own = &mut sheets.of[segment as usize];
+            // Two gaps may be of one sheet.
+            if gaps::lack(own, sheet.inward) {
+                put_among(own, network.along(segment), sheet);
+            }
         }
         Self::of(network, sheets)
     }

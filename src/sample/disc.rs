@@ -48,7 +48,8 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    /// Curves along all lines; `None` where there are none, one cannot be followed so, or its curve cuts the surface.
+    /// Curves along all lines; `None` where there are none, one cannot be followed so, its curve cuts the surface, or
+    /// what all leave goes on over such of the surface as the disc is not near.
     fn curves(&self) -> Option<Vec<ClipCurve>> {
         let (surface, tolerance) = (self.grower.surface, &self.grower.budget.clip);
         if holds_an_end(surface, self.region, &self.pose, self.radii, tolerance.outset) {
@@ -58,8 +59,9 @@ impl Lines<'_> {
         for Outline { points, closed, .. } in outlines(surface, self.region, &self.pose, self.grower.open) {
             clips.extend(clip::fit(&points, closed, self.radii, tolerance, Care::Nearest)?);
         }
-        let keeps = |clip: &ClipCurve| self.keeps(&clip.conic(self.radii));
-        ((1..=MOST_CLIPS).contains(&clips.len()) && clips.iter().all(keeps)).then_some(clips)
+        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
+        let few = (1..=MOST_CLIPS).contains(&clips.len());
+        (few && conics.iter().all(|conic| self.keeps(conic)) && !self.goes_astray(&conics)).then_some(clips)
     }
 
     /// Chords along them, the nearest first, as long as some line is not cut along.
@@ -118,9 +120,24 @@ impl Lines<'_> {
         self.keeps(&conic).then_some((clip, conic))
     }
 
-    /// Whether a curve cuts nothing of the surface.
+    /// Whether curves leave what members lie over or under that the disc is not near.
+    fn goes_astray(&self, conics: &[Conic]) -> bool {
+        let left = |member: &Member| !conics.iter().any(|conic| conic.cuts(member.local.truncate()));
+        self.region.members.iter().any(|member| !self.is_near(member) && left(member))
+    }
+
+    /// Whether a curve cuts nothing of the surface that the disc is near.
     fn keeps(&self, conic: &Conic) -> bool {
-        self.region.members.iter().all(|member| !conic.cuts(member.local.truncate()))
+        self.near().all(|member| !conic.cuts(member.local.truncate()))
+    }
+
+    /// The members that the disc lies so near to as splats have to; others may lie beyond a line that turns back.
+    fn near(&self) -> impl Iterator<Item = &Member> {
+        self.region.members.iter().filter(|member| self.is_near(member))
+    }
+
+    fn is_near(&self, member: &Member) -> bool {
+        self.grower.budget.reaches(member.local.z, 1.0)
     }
 
     /// The chord beside a side, as far across it as the surface goes.
@@ -128,7 +145,7 @@ impl Lines<'_> {
         let [from, to] = side;
         let out = -(to - from).perp().normalize_or_zero();
         let beyond = |member: &Member| (member.local.truncate() - from).dot(out);
-        let farthest = self.region.members.iter().map(beyond).fold(0.0, f64::max);
+        let farthest = self.near().map(beyond).fold(0.0, f64::max);
         let moved = side.map(|end| end + farthest * out);
         let stands_out = (self.radii * out).length() - moved[0].dot(out);
         // Less than a rim may stand out by is not worth a cut.
@@ -146,6 +163,7 @@ mod tests {
     use crate::analyse::cloud_normals::NormalSource;
     use crate::analyse::cloud_surface::{Lines as Given, cloud_surface};
     use crate::analyse::planted::{on_step, random};
+    use crate::analyse::surface::Surface;
     use crate::fit::clip::Clips;
     use crate::model::cloud::Cloud;
     use glam::{DVec3, Vec3};
@@ -270,5 +288,29 @@ mod tests {
             }
         }
         assert!(cut > 5 && around > 500, "{cut} are cut, with {around} points around");
+    }
+
+    #[test]
+    fn what_the_disc_is_not_near_may_be_cut_away_and_has_to_be() {
+        let surface = Surface::default();
+        let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat| Some(splat.clone()));
+        let mut region = Region::new(2);
+        let at = |x: f64, height: f64| DVec3::new(x, 0.0, height * BOUND);
+        let chord = ClipCurve::chord(-1.0, 1.0).conic(DVec2::ONE);
+        assert!(chord.cuts(DVec2::new(0.9, 0.0)) && !chord.cuts(DVec2::ZERO));
+        for (height, cut, left) in [(0.5, false, false), (-9.0, true, true), (9.0, true, true)] {
+            let mut told = |x: f64| {
+                region.members = vec![DVec3::ZERO, at(x, height)]
+                    .into_iter()
+                    .zip(0..)
+                    .map(|(local, point)| Member { point, local })
+                    .collect();
+                let (pose, place) = (Pose::default(), DVec2::ZERO);
+                let lines = Lines { grower: &grower, pose, radii: DVec2::ONE, place, region: &region };
+                (lines.keeps(&chord), lines.goes_astray(&[chord]))
+            };
+            assert_eq!(told(0.9), (cut, false), "across the chord, {height} bounds high");
+            assert_eq!(told(0.2), (true, left), "on the disc's side, {height} bounds high");
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Where borders of one sheet end and begin again a little farther along the lines: its points there are too few or lie
 //! too near to the lines to show it, as in the tip of a wedge between two lines.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::{AGREE, LineCut};
@@ -32,16 +34,16 @@ impl LineCut {
         let mut lacking = Vec::new();
         for from in ending {
             let Some((steps, to)) = self.gap(from, &beginning) else { continue };
-            beginning.retain(|&other| other != to);
-            let sheets = [from, to].map(|border| self.sheet(&self.borders[border as usize]));
+            beginning.remove(&to);
+            let sheets = [from, to.1].map(|border| self.sheet(&self.borders[border as usize]));
             let between = |step: &Step| (step.segment, self.between(sites, step, sheets));
             lacking.extend(steps.iter().map(between));
         }
         lacking
     }
 
-    /// The borders that end and those that begin where no other of their sheet goes on.
-    pub(super) fn loose(&self) -> (Vec<u32>, Vec<u32>) {
+    /// The borders that end and those that begin where no other of their sheet goes on, the latter with their nodes.
+    pub(super) fn loose(&self) -> (Vec<u32>, BTreeSet<(u32, u32)>) {
         let mut linked = [vec![false; self.points.len()], vec![false; self.points.len()]];
         for border in &self.borders {
             linked[0][border.points[0] as usize] = true;
@@ -51,11 +53,12 @@ impl LineCut {
         let point = |border: u32, end: usize| self.borders[border as usize].points[end] as usize;
         let ending = all().filter(|&border| !linked[0][point(border, 1)]);
         let beginning = all().filter(|&border| !linked[1][point(border, 0)]);
+        let beginning = beginning.map(|border| (self.borders[border as usize].ends[0], border));
         (ending.collect(), beginning.collect())
     }
 
     /// The shortest way along lines that lack the sheet from where a border ends to where another of them begins.
-    fn gap(&self, from: u32, beginning: &[u32]) -> Option<(Vec<Step>, u32)> {
+    fn gap(&self, from: u32, beginning: &BTreeSet<(u32, u32)>) -> Option<(Vec<Step>, (u32, u32))> {
         let border = &self.borders[from as usize];
         let normal = self.sheet(border).normal;
         let mut steps = Vec::new();
@@ -63,12 +66,11 @@ impl LineCut {
         let mut at = 0;
         while at < steps.len().min(MOST_STEPS) {
             let Step { segment, to, count, .. } = steps[at];
-            let goes_on = |&&other: &&u32| {
+            let goes_on = |&&(_, other): &&(u32, u32)| {
                 let other = &self.borders[other as usize];
-                let is_on = other.ends[0] == to && other.segment != segment;
-                is_on && self.sheet(other).normal.dot(normal) >= AGREE
+                other.segment != segment && self.sheet(other).normal.dot(normal) >= AGREE
             };
-            if let Some(&next) = beginning.iter().find(goes_on) {
+            if let Some(&next) = beginning.range((to, 0)..=(to, u32::MAX)).find(goes_on) {
                 let back = std::iter::successors(Some(at), |&at| steps[at].before);
                 return Some((back.map(|at| steps[at]).collect(), next));
             }
@@ -102,10 +104,8 @@ impl LineCut {
         }
     }
 
-    /// Whether no sheet of a segment lies in a direction from it, or so near to that that it would be taken for it.
     fn lacks(&self, segment: u32, inward: DVec3) -> bool {
-        let near = |sheet: &Sheet| sheet.inward.dot(inward) > libm::cos(SEPARATE);
-        !self.sheets.of[segment as usize].iter().any(near)
+        lack(&self.sheets.of[segment as usize], inward)
     }
 
     /// The sheet at a segment between two where it shows.
@@ -118,4 +118,9 @@ impl LineCut {
         nearest_first(&self.network, sites, step.segment, &mut points);
         Sheet { inward: normal.cross(step.along), normal, points }
     }
+}
+
+/// Whether none of some sheets lies in a direction, or so near to that that it would be taken for the sheet there.
+pub(super) fn lack(sheets: &[Sheet], inward: DVec3) -> bool {
+    sheets.iter().all(|sheet| sheet.inward.dot(inward) <= libm::cos(SEPARATE))
 }

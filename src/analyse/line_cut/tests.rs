@@ -275,7 +275,7 @@ fn a_sheet_that_shows_on_both_sides_of_a_short_gap_goes_on_through_it_and_round_
         filled.sort_unstable();
         assert_eq!(filled, near);
         let mended = cut.with(gaps);
-        assert_eq!(mended.loose(), (Vec::new(), Vec::new()));
+        assert_eq!(mended.loose(), Default::default());
         assert_eq!(mended.points.len(), whole.points.len());
     };
     // On one edge alone, from the corner on, and on both.
