@@ -22,7 +22,7 @@ use glam::{DVec3, Vec3};
 
 use crate::analyse::cloud_creases::{Sought, cloud_creases};
 use crate::analyse::cloud_normals::NormalSource;
-use crate::analyse::cloud_surface::{CloudSurface, Lines, OpenPlace, cloud_surface};
+use crate::analyse::cloud_surface::{CloudSurface, Lines, OpenPlace, Sparse, cloud_surface};
 use crate::analyse::mesh_surface::{Features, Found, Making, Marked, cut_lines};
 use crate::analyse::partners::Tally;
 use crate::analyse::sided::Sided;
@@ -118,6 +118,9 @@ pub struct Baked {
     /// Borders of a cloud and rims of its holes, those of most points first: there the sampling does not say
     /// how far the surface goes on, and splats may leave a hole or reach beyond.
     pub open_places: Vec<OpenPlace>,
+    /// Where a cloud's points lie too far apart for the bound, if any do: between them the surface, and with it
+    /// what splats may be off by, is known to no better than that.
+    pub sparse: Option<Sparse>,
     /// Why the colours were left out, if they were.
     pub colors_left_out: Option<&'static str>,
 }
@@ -152,7 +155,7 @@ pub fn bake(
     clock.stage(progress, "analyse");
     let meant = meant(input, options, max_error)?;
     check_noise(&meant, options.denoise, max_error)?;
-    let Analysed { mut surface, marked, features, left_out, discs, open_places } =
+    let Analysed { mut surface, marked, features, left_out, discs, open_places, sparse } =
         analyse(&meant, options, max_error, diagonal)?;
     let mendings = if discs.is_some() { MENDINGS } else { 0 };
     if let Some(discs) = discs {
@@ -245,6 +248,7 @@ pub fn bake(
         samples,
         left_out,
         open_places,
+        sparse,
         colors_left_out,
     })
 }
@@ -306,6 +310,7 @@ struct Analysed {
     /// What points tell of the surface by themselves, nothing for a mesh; `None` where nobody looks.
     discs: Option<Discs>,
     open_places: Vec<OpenPlace>,
+    sparse: Option<Sparse>,
 }
 
 /// Lines found that are shorter than this many error bounds, taken together with all that they
@@ -336,12 +341,20 @@ fn analyse(meant: &Meant<'_>, options: &Options, max_error: f64, diagonal: f64) 
             let lines = cloud_lines(&meant.edges, &given, options.edge_angle, max_error);
             let reach = thinning(max_error, diagonal);
             let told = told_margins(options, meant.noise, diagonal);
-            let CloudSurface { surface, left_out, discs, edges, open_places, matched } =
-                cloud_surface(cloud, options.normals.into(), lines, meant.noise, Some(reach), told)?;
+            let CloudSurface { surface, left_out, discs, edges, open_places, sparse, matched } =
+                cloud_surface(
+                    cloud,
+                    options.normals.into(),
+                    lines,
+                    meant.noise,
+                    Some(reach),
+                    told,
+                    Some(max_error),
+                )?;
             // Creases found before the cloud was smoothed are not the user's.
             let matched = matched.filter(|_| matches!(options.edges, Edges::Given(_)));
             let features = Found { feature_edges: edges, matched };
-            Ok(Analysed { surface, marked: None, features, left_out, discs, open_places })
+            Ok(Analysed { surface, marked: None, features, left_out, discs, open_places, sparse })
         }
     }
 }

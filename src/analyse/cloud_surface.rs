@@ -17,6 +17,7 @@ use super::open_places::open_places;
 use super::outliers::{Strewn, outliers};
 pub use super::sided::Lines;
 use super::sided::{Cleaned, Sided};
+pub use super::sparse::Sparse;
 use super::surface::{NONE, Surface};
 use super::thin::{Reach, Sheet, owners};
 use crate::error::Result;
@@ -37,6 +38,8 @@ pub struct CloudSurface {
     pub edges: usize,
     /// Its borders and the rims of its holes, lines aside: there splats that cover its points may leave a hole.
     pub open_places: Vec<OpenPlace>,
+    /// Where its points lie too far apart for the bound, if any do.
+    pub sparse: Option<Sparse>,
     /// What became of the lines, if any were given; `edges` counts their samples' segments.
     pub matched: Option<Matched>,
 }
@@ -73,7 +76,8 @@ struct Laid {
 /// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
 /// none. Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
 ///
-/// Its discs are told where the median of its points' margins, model units, is one of `told`.
+/// Its discs are told where the median of its points' margins, model units, is one of `told`, and where they lie too
+/// far apart for `bound`, model units, if that is of interest.
 ///
 /// Neither the order of points and lines nor repeated points change anything but `left_out` and `discs`.
 /// Lines far from the cloud, and lines around which the points show no sheets, cut nothing.
@@ -87,9 +91,11 @@ pub fn cloud_surface(
     noise: Option<f64>,
     reach: Option<Reach>,
     told: Option<Range<f64>>,
+    bound: Option<f64>,
 ) -> Result<CloudSurface> {
     let laid = Laid::of(cloud, source, lines, noise)?;
     let (left_out, open_places) = (laid.left_out(), laid.open_places());
+    let sparse = bound.and_then(|bound| laid.sparse(bound));
     let discs = told.filter(|told| told.contains(&laid.median_margin())).map(|_| laid.discs());
     let Laid { points, normals, cut, joined, joins, on_line, outlier, cells, cleaned, .. } = laid;
     let sheet = Sheet {
@@ -107,7 +113,7 @@ pub fn cloud_surface(
         Lines::Given(lines) if !lines.is_empty() => Some(matched(lines, edges, length, cleaned)),
         Lines::Given(_) | Lines::Found(_) => None,
     };
-    Ok(CloudSurface { surface, left_out, discs, edges, open_places, matched })
+    Ok(CloudSurface { surface, left_out, discs, edges, open_places, sparse, matched })
 }
 
 /// The surface of a cloud as its points tell it by themselves: what splats that cover it have to fill, and
@@ -173,6 +179,14 @@ impl Laid {
         let mut counts: Vec<bool> = self.outlier.iter().map(|outlier| !outlier).collect();
         self.ends.iter().for_each(|&(point, _)| counts[point as usize] = false);
         open_places(&self.points.positions, &self.joined, |n| counts[n])
+    }
+
+    /// Where points, but for outliers, lie too far apart for a bound.
+    fn sparse(&self, bound: f64) -> Option<Sparse> {
+        let nothing = Disc::default();
+        let disc = |n: u32| if self.outlier[n as usize] { nothing } else { self.disc(n) };
+        let all = (0..self.joined.len() as u32).into_par_iter();
+        Sparse::of(all.map(|n| (self.points.positions[n as usize], disc(n))), bound)
     }
 
     /// The discs of the cloud's points but for outliers, in its order.

@@ -50,6 +50,7 @@ pub mod sides;
 pub mod smooth;
 pub mod smoothed;
 mod snap;
+mod sparse;
 pub mod split;
 mod strips;
 pub mod surface;

@@ -152,7 +152,7 @@ mod tests {
         let positions: Vec<Vec3> = (0..count).map(point).collect();
         let normals = positions.iter().map(|p| p.normalize()).collect();
         let cloud = Cloud { positions, normals, ..Cloud::default() };
-        cloud_surface(&cloud, NormalSource::Keep, Lines::Given(&[]), None, reach, None).unwrap().surface
+        cloud_surface(&cloud, NormalSource::Keep, Lines::Given(&[]), None, reach, None, None).unwrap().surface
     }
 
     #[test]

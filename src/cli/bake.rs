@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use qsplat::analyse::cloud_surface::OpenPlace;
+use qsplat::analyse::cloud_surface::{OpenPlace, Sparse};
 use qsplat::analyse::mesh_surface::Found;
 use qsplat::bake::meant::Quiet;
 use qsplat::bake::{
@@ -290,6 +290,7 @@ impl Arguments {
             outliers: baked.left_out.len() as u64,
             open_places: open_places(&baked.open_places, &cloud.frame),
             open_place_count: baked.open_places.len() as u64,
+            sparse: baked.sparse.as_ref().map(|found| sparse(found, &cloud.frame, baked.asset.diagonal)),
             smooth: matches!(baked.made, Made::Smooth(_)),
             noise: baked.noise.map(share),
             moved: match baked.made {
@@ -348,6 +349,12 @@ fn open_places(found: &[OpenPlace], frame: &Frame) -> Vec<report::OpenPlace> {
         reach: place.reach * frame.scale(),
     };
     found.iter().take(report::MOST_OPEN_PLACES).map(stated).collect()
+}
+
+/// Where a cloud's points lie too far apart, in input units.
+fn sparse(found: &Sparse, frame: &Frame, diagonal: f64) -> report::Sparse {
+    let worst = frame.to_input(found.worst).into();
+    report::Sparse { points: found.points as u64, worst, by: found.by / diagonal }
 }
 
 fn outliers_note(input: &report::Input) -> String {

@@ -17,7 +17,7 @@ use crate::model::asset::{Asset, Counts};
 pub use optional::Optional;
 pub use schema::{
     Absent, Accuracy, Choice, Chunk, Density, EdgeCases, Field, File, Fit, Input, LowerBound,
-    MOST_OPEN_PLACES, Meeting, Model, Moved, OpenPlace, Options, Run,
+    MOST_OPEN_PLACES, Meeting, Model, Moved, OpenPlace, Options, Run, Sparse,
 };
 
 /// Name and version of the schema. The number grows when a key changes its meaning or goes;

@@ -36,6 +36,9 @@ pub struct Input {
     /// How many there are in all.
     #[serde(default)]
     pub open_place_count: u64,
+    /// Where a cloud's points lie too far apart for the bound; `None` where nowhere, and for a mesh.
+    #[serde(default)]
+    pub sparse: Option<Sparse>,
     /// Whether a mesh's facets were taken for a smooth surface: the errors are then those against it.
     pub smooth: bool,
     /// Standard deviation of a cloud's points from their surface, a fraction of the diagonal; `None`
@@ -87,6 +90,18 @@ pub struct OpenPlace {
     pub middle: [f64; 3],
     /// Half the diagonal of that box, input units.
     pub reach: f64,
+}
+
+/// Points of a cloud between which and those around the surface bends by more than the bound: there splats that fit
+/// all points may lie off it by as much, and edges off their lines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sparse {
+    /// How many there are.
+    pub points: u64,
+    /// The one around which it bends the most, input units.
+    pub worst: [f64; 3],
+    /// By how much there, a fraction of the diagonal.
+    pub by: f64,
 }
 
 /// How far points were moved, fractions of the diagonal.

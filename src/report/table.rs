@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Choice, EdgeCases, File, LowerBound, Moved, Report, Run};
+use super::{Choice, EdgeCases, File, LowerBound, Moved, Report, Run, Sparse};
 
 impl Report {
     /// Lines of plain text, ending in a line break.
@@ -47,6 +47,16 @@ impl Report {
                 text.row(
                     "open",
                     format!("{places} around ({x:.6}, {y:.6}, {z:.6}), {} there", points(largest.points)),
+                );
+            }
+            if let Some(Sparse { points: count, worst: [x, y, z], by }) = &input.sparse {
+                text.row(
+                    "sparse",
+                    format!(
+                        "{} between which the surface bends by more than the budget, by {by:.2e} of the \
+                         diagonal around ({x:.6}, {y:.6}, {z:.6}): it is known no better there",
+                        points(*count)
+                    ),
                 );
             }
             if input.smooth {

@@ -57,6 +57,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         outliers: 3,
         open_places: vec![OpenPlace { points: 30, middle: [1.0, 2.0, 3.0], reach: 0.5 }],
         open_place_count: 2,
+        sparse: Some(Sparse { points: 7, worst: [1.0, 2.0, 4.0], by: 2e-3 }),
         smooth: false,
         noise: Some(1e-5),
         moved: Some(Moved { rms: 1e-5, max: 5e-5 }),

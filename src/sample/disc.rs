@@ -174,7 +174,7 @@ mod tests {
     fn discs(positions: Vec<Vec3>, edges: &[Vec<DVec3>]) -> Vec<(Vec3, Splat)> {
         let cloud = Cloud { positions, ..Cloud::default() };
         let (source, given) = (NormalSource::Estimate, Given::Given(edges));
-        let surface = cloud_surface(&cloud, source, given, None, None, None).unwrap().surface;
+        let surface = cloud_surface(&cloud, source, given, None, None, None, None).unwrap().surface;
         let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat| Some(splat.clone()));
         let mut region = Region::new(surface.points.len());
         let mut over = |piece: u32| polygon::over(&grower, piece, &mut region).unwrap().splat;

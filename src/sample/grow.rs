@@ -510,8 +510,9 @@ mod tests {
         };
         let line: Vec<DVec3> = (0..=40).map(at).collect();
         let given = Lines::Given(std::slice::from_ref(&line));
-        let surface =
-            cloud_surface(&cloud, NormalSource::Estimate, given, Some(0.0), None, None).unwrap().surface;
+        let surface = cloud_surface(&cloud, NormalSource::Estimate, given, Some(0.0), None, None, None)
+            .unwrap()
+            .surface;
         let round = |splat: &Splat| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &round);
         let mut region = Region::new(surface.points.len());

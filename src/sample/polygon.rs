@@ -328,7 +328,7 @@ mod tests {
         let cloud = Cloud { positions, ..Cloud::default() };
         let reach = Reach { radius: 0.1, offset: 0.01 };
         let (source, lines) = (NormalSource::Estimate, Lines::Given(&[]));
-        let surface = cloud_surface(&cloud, source, lines, None, Some(reach), None).unwrap().surface;
+        let surface = cloud_surface(&cloud, source, lines, None, Some(reach), None, None).unwrap().surface;
         assert!(
             surface.points.len() * 4 < surface.pieces.len(),
             "{} points stand for all",

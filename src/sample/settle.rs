@@ -288,9 +288,10 @@ mod tests {
             .collect();
         let cloud = Cloud { positions: places, ..Cloud::default() };
         let line = [vec![DVec3::new(-0.5, 0.0, 0.0), DVec3::new(0.5, 0.0, 0.0)]];
-        let surface = cloud_surface(&cloud, NormalSource::Estimate, Lines::Given(&line), None, None, None)
-            .unwrap()
-            .surface;
+        let surface =
+            cloud_surface(&cloud, NormalSource::Estimate, Lines::Given(&line), None, None, None, None)
+                .unwrap()
+                .surface;
         // As if files kept the ends of curves to a twentieth of a radian.
         let coarse = |splat: &Splat| {
             let angle = |alpha: f64| (20.0 * alpha).round() / 20.0;

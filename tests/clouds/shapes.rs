@@ -34,6 +34,27 @@ fn a_sphere_without_normals_comes_out_whole_and_outside_out() {
 }
 
 #[test]
+fn points_too_far_apart_for_the_bound_are_told_and_only_where_the_surface_bends() {
+    // A roof that turns by some degrees, too few for a crease, with about 0.016 from point to point.
+    let told = |degrees: f64| {
+        let slope = (0.5 * degrees).to_radians().tan();
+        let mut draw = Draw(7);
+        let mut place = || {
+            let (x, y) = (draw.both(), draw.both());
+            DVec3::new(x, y, -slope * y.abs())
+        };
+        let cloud = cloud(&(0..16_000).map(|_| place()).collect::<Vec<_>>(), &[]);
+        let sparse = bake(&cloud, &options(MaxError::Relative(2e-4))).baked.sparse;
+        sparse.map(|sparse| (sparse, cloud.frame.to_input(sparse.worst)))
+    };
+    assert_eq!(told(0.0), None);
+    // Half a margin times 0.35 is 0.0015 or more, the bound 0.0006.
+    let (sparse, worst) = told(20.0).unwrap();
+    assert!(worst.y.abs() < 0.05 && (100..1000).contains(&sparse.points), "{sparse:?} around {worst}");
+    assert!((1e-3..2e-2).contains(&sparse.by), "{sparse:?}");
+}
+
+#[test]
 fn normals_are_kept_or_estimated_as_asked() {
     let places = sphere(3000, 3);
     let inward: Vec<DVec3> = places.iter().map(|place| -3.0 * *place).collect();
