@@ -21,7 +21,7 @@ use crate::model::splat::Splat;
 const PAST: f64 = 2.0;
 
 /// The disc over a piece of a cloud cut along the lines around, by curves none of which cuts anything of the surface that
-/// the disc reaches; uncut where rounding would let them cut the point itself.
+/// the disc lies near; uncut where rounding would let them cut the point itself.
 #[must_use]
 pub fn cut(grower: &Grower, disc: Splat, piece: u32, region: &mut Region) -> Splat {
     let pose = Pose { center: disc.center, axes: disc.axes };
