@@ -76,8 +76,8 @@ struct Laid {
 /// `noise` is the standard deviation of the points from their surface, model units; `None` where they show
 /// none. Of points that lie densely, some stand for those within `reach` of them: see [`super::thin`].
 ///
-/// Its discs are told where the median of its points' margins, model units, is one of `told`, and where they lie too
-/// far apart for `bound`, model units, if that is of interest.
+/// Its discs are told where the median of its points' margins, model units, is one of `told`; where its points lie too
+/// far apart for a bound, model units, is told of `bound`, if that is given.
 ///
 /// Neither the order of points and lines nor repeated points change anything but `left_out` and `discs`.
 /// Lines far from the cloud, and lines around which the points show no sheets, cut nothing.

@@ -10,7 +10,8 @@ use crate::analyse::cloud_graph::Sites;
 use crate::analyse::line_network::CROWD;
 use crate::analyse::line_sheets::{SEPARATE, Sheet, WINDOW, nearest_first};
 
-/// Segments that are looked at from where a border ends, at most.
+/// Segments that are looked at from where a border ends, at most: a gap has no more than [`WINDOW`], and at corners a
+/// few lines each way are followed; in a thicket of lines the work at each end stays bounded.
 const MOST_STEPS: usize = 64;
 
 /// A segment on the way from where a border ends.
