@@ -64,6 +64,9 @@ const PLACES_LOOKED_AT: usize = 32;
 /// A line of fewer places than this does not close on itself at a corner.
 const LOOP: usize = 8;
 
+/// Three directions span space if the volume between them is more than this: they do not lie in a plane by 15°.
+const SOLID: f64 = 0.26;
+
 /// Weight of the mean of their places among the lines that meet at a corner, so that nearly parallel ones do
 /// not meet far away.
 const MEAN_WEIGHT: f64 = 1e-3;
@@ -184,11 +187,16 @@ pub(super) fn join(lines: &mut [Line]) -> Result<Vec<[bool; 2]>> {
         }
         loose.retain(|end| !met[end.line][usize::from(end.last)]);
     };
+    // Two edges of a corner may turn by no more than one does over a gap; a third out of their plane tells it is none.
+    let mut known = corners(&loose)?;
+    known.retain(|(_, ends)| are_solid(&ends.iter().map(|&n| loose[n].outward).collect::<Vec<_>>()));
+    bring(lines, &mut loose, &known);
     let over_gaps = gaps(&loose)?;
     bring(lines, &mut loose, &over_gaps);
-    let corners = corners(&loose)?;
-    bring(lines, &mut loose, &corners);
-    let late = to_corners(&loose, &corners)?;
+    let others = corners(&loose)?;
+    bring(lines, &mut loose, &others);
+    known.extend(others);
+    let late = to_corners(&loose, &known)?;
     bring(lines, &mut loose, &late);
     let run = run_into(lines, &loose)?;
     bring(lines, &mut loose, &run);
@@ -259,6 +267,12 @@ fn meet(a: &End, b: &End) -> bool {
     (a.line != b.line || a.places >= LOOP)
         && a.reaches(place, a.corner_reach(b))
         && b.reaches(place, b.corner_reach(a))
+}
+
+/// Whether some directions span space.
+fn are_solid(ways: &[DVec3]) -> bool {
+    let pairs = ways.iter().enumerate().flat_map(|(n, a)| ways[..n].iter().map(move |b| a.cross(*b)));
+    pairs.into_iter().any(|across| ways.iter().any(|way| across.dot(*way).abs() > SOLID))
 }
 
 /// The place nearest to all lines that end there, and those ends that reach it.
