@@ -99,6 +99,11 @@ impl Hinge {
         (side, way.dot(self.normals[side]).abs())
     }
 
+    /// The unit normal of one half plane, of either sign.
+    pub(super) fn normal(&self) -> DVec3 {
+        self.normals[0]
+    }
+
     /// A place as it would lie if the sheets did not bend.
     fn straight(&self, p: DVec3) -> DVec3 {
         let along = p.dot(self.along);

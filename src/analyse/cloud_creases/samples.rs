@@ -44,6 +44,9 @@ const ROUGH_AMONG_MANY: f64 = 1.1;
 /// Points looked at around one: a few spacings in all directions.
 const FEWEST: f64 = 32.0;
 
+/// Of these the nearest, which are looked at alone where all show no crease: a third face may lie that near.
+const CLOSE: usize = 20;
+
 /// The most, so that the work stays bounded.
 const MOST: f64 = 160.0;
 
@@ -191,26 +194,33 @@ impl Points<'_> {
         let points: Vec<DVec3> = around.iter().map(offset).collect();
         let radius = (points.len() as f64 / PI).sqrt();
         let noise = self.noise / spacing;
-        let cutoff = cutoff(noise);
-        let normal = Moments::of(points.iter().copied()).plane()?.normal;
-        let smooth = smooth(&points, normal, radius, cutoff);
-        if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
-            return None;
-        }
         // A neighbourhood no larger than without noise has none of its points to spare.
         let many = points.len() > FEWEST as usize;
-        let hinge = bent_as_shown(&points, normal, cutoff, if many { noise } else { 0.0 })?;
-        let sound =
-            is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
-        (sound && is_turned(&hinge, turn)).then(|| Sample {
+        let shown = |points: &[DVec3]| shown(points, noise, many, turn);
+        let hinge = shown(&points).or_else(|| (!many).then(|| shown(points.get(..CLOSE)?))?)?;
+        Some(Sample {
             place: here + spacing * hinge.foot,
             along: hinge.along,
-            between: (hinge.inward[0] + hinge.inward[1]).normalize_or(normal),
+            between: (hinge.inward[0] + hinge.inward[1]).normalize_or(hinge.normal()),
             turn: hinge.turn(),
-            rounded: if many { hinge.rounded(&points, radius, cutoff) } else { 0.0 },
+            rounded: if many { hinge.rounded(&points, radius, cutoff(noise)) } else { 0.0 },
             size: radius * spacing,
         })
     }
+}
+
+/// The hinge that points show.
+fn shown(points: &[DVec3], noise: f64, many: bool, turn: f64) -> Option<Hinge> {
+    let radius = (points.len() as f64 / PI).sqrt();
+    let cutoff = cutoff(noise);
+    let normal = Moments::of(points.iter().copied()).plane()?.normal;
+    let smooth = smooth(points, normal, radius, cutoff);
+    if smooth < EXACT * EXACT + ROUGH_NOISE * noise * noise {
+        return None;
+    }
+    let hinge = bent_as_shown(points, normal, cutoff, if many { noise } else { 0.0 })?;
+    let sound = is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
+    (sound && is_turned(&hinge, turn)).then_some(hinge)
 }
 
 /// The distance, in spacings, beyond which a point that scatters by so many is not explained.
