@@ -35,6 +35,16 @@ const TOLD_APART: f64 = 4.3;
 /// Sheets meet sharply at an angle of less than this (cosine of 60°).
 const SHARP: f64 = 0.5;
 
+/// Points whose surface passes by a line lie farther from it than this share of the depth, where normals are of
+/// one sheet...
+const BY: f64 = 0.5;
+
+/// ... their planes miss it by more than this sine of the way to it (45°)...
+const PAST: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// ... and they lie off the way that any sheet runs (cosine of 60°).
+const OFF: f64 = 0.5;
+
 /// Segments on either side, along the line, whose points vote too: four to eight spacings,
 /// so that the wedge of a sheet that is left beside a corner still holds a few points.
 pub(super) const WINDOW: usize = 8;
@@ -112,8 +122,11 @@ impl Sheets {
             }
         });
         beside.par_iter_mut().enumerate().for_each(|(n, beside)| {
-            let near = |beside: &Beside| beside.offset.length() <= depth(sites, n);
-            *beside = beside.filter(|beside| near(beside) || meet_sharply(&of[beside.segment as usize]));
+            *beside = beside.filter(|beside| {
+                let sheets = &of[beside.segment as usize];
+                let near = beside.offset.length() <= depth(sites, n);
+                (near || meet_sharply(sheets)) && !(passes_by(sites, n, beside) && is_off(sheets, beside))
+            });
         });
         Self { of, beside }
     }
@@ -167,8 +180,8 @@ pub fn sheets_of(
     let votes = |(n, beside): (usize, &Option<Beside>)| {
         let beside = beside.as_ref().filter(|beside| !beside.at_end && tells(beside.segment))?;
         let away = beside.offset.length();
-        let shows = away > too_near(sites, n) && away <= depth(sites, n);
-        shows.then_some((beside.segment, n as u32))
+        let near = away > too_near(sites, n) && away <= depth(sites, n);
+        (near && !passes_by(sites, n, beside)).then_some((beside.segment, n as u32))
     };
     let voters =
         Rows::from_pairs(network.segments.len(), beside.iter().enumerate().filter_map(votes).collect());
@@ -179,6 +192,20 @@ pub fn sheets_of(
 /// Within how far of a line points show its sheets, model units.
 fn depth(sites: &Sites, point: usize) -> f64 {
     too_near(sites, point) + DEPTH * f64::from(sites.spacing[point])
+}
+
+/// Whether a point beside a line is of a surface that passes by it, such as the other side of a thin wall: it lies
+/// well off the line, and its tangent plane leads past that.
+fn passes_by(sites: &Sites, point: usize, beside: &Beside) -> bool {
+    let away = beside.offset.length();
+    let height = beside.offset.dot(sites.normals[point].as_dvec3()).abs();
+    away > BY * depth(sites, point) && height > PAST * away
+}
+
+/// Whether a point beside a line lies in the direction of none of the sheets there.
+fn is_off(sheets: &[Sheet], beside: &Beside) -> bool {
+    let way = beside.offset.normalize_or_zero();
+    sheets.iter().all(|sheet| sheet.inward.dot(way) < OFF)
 }
 
 /// Within how far of a line a point has no direction from it, model units.

@@ -219,7 +219,8 @@ fn shown(points: &[DVec3], noise: f64, many: bool, turn: f64) -> Option<Hinge> {
         return None;
     }
     let hinge = bent_as_shown(points, normal, cutoff, if many { noise } else { 0.0 })?;
-    let sound = is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
+    let sound =
+        is_better(smooth, hinge.scatter, noise, points.len()) && is_sound(&hinge, points.len(), radius);
     (sound && is_turned(&hinge, turn)).then_some(hinge)
 }
 
