@@ -104,6 +104,21 @@ impl Hinge {
         self.normals[0]
     }
 
+    /// Whether its sheets bend.
+    pub(super) fn is_bent(&self) -> bool {
+        self.bend != DVec3::ZERO
+    }
+
+    /// From the place of the line beside another to that.
+    pub(super) fn off(&self, p: DVec3) -> DVec3 {
+        (self.straight(p) - self.foot).reject_from_normalized(self.along)
+    }
+
+    /// The place of the line beside another.
+    pub(super) fn beside(&self, p: DVec3) -> DVec3 {
+        p - self.off(p)
+    }
+
     /// A place as it would lie if the sheets did not bend.
     fn straight(&self, p: DVec3) -> DVec3 {
         let along = p.dot(self.along);

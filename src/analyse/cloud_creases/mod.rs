@@ -7,7 +7,7 @@
 //! 3. `links`: each is linked to the next on either side; `lines` keeps the chains that are sharp
 //!    enough and smooths them.
 //! 4. `corners`: ends that lead to one place, or into another line, are carried on to it.
-//! 5. `arms`: creases too short for samples of their own are looked for between corners.
+//! 5. `arms`: creases too short for samples of their own, and gaps, are looked for between the ends of lines.
 //!
 //! Sizes are told in spacings of the points. Each stage takes what the one before made in the order of
 //! the points, which lie along a Morton curve, so that nothing depends on the order of the input or
@@ -84,7 +84,7 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
     let met = corners::join(&mut lines)?;
     let mut lines = worth_it(lines, &met, sought.shortest);
-    lines.extend(arms::between_corners(&lines, points, sharp)?);
+    lines.extend(arms::between_ends(&lines, points, sharp)?);
     Ok(lines.into_iter().map(Line::whole).collect())
 }
 

@@ -230,7 +230,7 @@ pub(super) fn cutoff(noise: f64) -> f64 {
 }
 
 /// The hinge of least squares near points, whose sheets bend where the points show that they do.
-fn bent_as_shown(points: &[DVec3], normal: DVec3, cutoff: f64, noise: f64) -> Option<Hinge> {
+pub(super) fn bent_as_shown(points: &[DVec3], normal: DVec3, cutoff: f64, noise: f64) -> Option<Hinge> {
     let flat = Hinge::fit(points, normal, cutoff, noise)?;
     let better = |bent: &Hinge| {
         (flat.scatter - bent.scatter) * points.len() as f64 > BETTER * bent.scatter.max(EXACT * EXACT)
