@@ -405,4 +405,18 @@ mod tests {
         let mut lines = [straight(3.0 * DVec3::X, 9.0 * DVec3::X), straight(3.0 * DVec3::Y, 9.0 * DVec3::Y)];
         assert_eq!(join(&mut lines).unwrap(), [[false; 2]; 2]);
     }
+
+    #[test]
+    fn two_edges_of_a_corner_that_turn_little_meet_where_the_third_leads() {
+        // The corner of a hexagonal bar: two edges at 120°, which might go over a gap as one, and one along it.
+        let (sin, cos) = libm::sincos(60_f64.to_radians());
+        let ways = [DVec3::new(cos, sin, 0.0), DVec3::new(cos, -sin, 0.0), DVec3::Z];
+        for third in [true, false] {
+            let ways = &ways[..if third { 3 } else { 2 }];
+            let mut lines: Vec<Line> = ways.iter().map(|&way| straight(0.7 * way, 9.0 * way)).collect();
+            assert!(join(&mut lines).unwrap().iter().all(|met| *met == [true, false]));
+            let off = lines[0].places[0].length();
+            assert!((off < 1e-3) == third, "{off}");
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 
 use super::*;
-use crate::analyse::planted::{normal, random};
+use crate::analyse::planted::{lay, normal, random, spaced};
 use crate::analyse::segment_grid::SegmentGrid;
 
 /// A place that strays by `scatter` in every direction.
@@ -169,6 +169,51 @@ fn an_edge_too_short_for_samples_of_its_own_is_found_between_its_corners() {
         let from = DVec3::new(x, y, 0.0);
         let edge = [vec![from, from + 0.25 * along]];
         assert!(apart(&edge, &found) < 0.02, "{along} from {from}: {}", apart(&edge, &found));
+    }
+}
+
+/// Points of the end of a wall three spacings thick, and of its two sides; they lie about 0.02 apart.
+fn thin_wall() -> Vec<Vec3> {
+    let place = |n: u64| {
+        let (x, way) = (random(2 * n), 0.2 * random(2 * n + 1));
+        let beyond = way.abs() - 0.03;
+        DVec3::new(x, if beyond < 0.0 { way } else { 0.03_f64.copysign(way) }, -beyond.max(0.0))
+    };
+    (0..2000).map(|n| place(n).as_vec3()).collect()
+}
+
+#[test]
+fn the_edges_of_a_thin_wall_are_found() {
+    let found = creases(thin_wall(), 0.0);
+    let edges: Vec<Vec<DVec3>> =
+        [-0.03, 0.03].map(|y| vec![DVec3::new(-0.85, y, 0.0), DVec3::new(0.85, y, 0.0)]).to_vec();
+    assert!(apart(&edges, &found) < 0.015, "{}", apart(&edges, &found));
+    let off = |place: &DVec3| (place.y.abs() - 0.03).hypot(place.z);
+    assert!(found.iter().flatten().all(|place| off(place) < 0.005));
+}
+
+#[test]
+fn gaps_of_lines_are_closed_where_points_show_the_crease_there() {
+    let rim = cylinder(2000).into_iter().map(|p| p - Vec3::new(0.0, 0.4, 0.4)).collect();
+    for (positions, place) in [
+        (roof(90.0), (|at: f64| at * DVec3::X) as fn(f64) -> DVec3),
+        (rim, |at: f64| 0.4 * DVec3::new(libm::sin(at / 0.4), libm::cos(at / 0.4) - 1.0, 0.0)),
+    ] {
+        let (search, nearest, spacing) = lay(&positions);
+        let points = Points { laid: spaced(&search, &positions, &spacing), nearest: &nearest, noise: 0.0 };
+        let size = 3.2 * points.usual_spacing();
+        let piece = |from: f64, to: f64| Line {
+            places: (0..=10).map(|n| place(from + 0.1 * (to - from) * f64::from(n))).collect(),
+            closed: false,
+            size,
+        };
+        let half = 1.5 * size;
+        let lines = [piece(-3.0 * size, -half), piece(half, 3.0 * size)];
+        let found = arms::between_ends(&lines, &points, libm::cos(40_f64.to_radians())).unwrap();
+        assert_eq!(found.len(), 1, "{found:?}");
+        let gap = [(0..=20).map(|n| place(half * (0.1 * f64::from(n) - 1.0))).collect()];
+        let found = [found[0].clone().whole()];
+        assert!(apart(&gap, &found) < 0.1 * size, "{} of {size}", apart(&gap, &found));
     }
 }
 

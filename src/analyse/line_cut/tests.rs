@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::PI;
+
 use super::*;
 use crate::analyse::canonical::mix;
 use crate::analyse::nearest::listed;
@@ -286,4 +288,46 @@ fn a_sheet_that_shows_on_both_sides_of_a_short_gap_goes_on_through_it_and_round_
     fills(&both.0, both.1);
     // A gap longer than points along a line may be lacking is one of the surface.
     assert!(lacking(0.6, &|_| true).1.gaps(&sites).is_empty());
+}
+
+#[test]
+fn the_other_side_of_a_thin_wall_is_no_sheet_of_a_line() {
+    // Along x an inner edge of two walls, three spacings thick, and their outer sides with a rounded edge; points lie
+    // about 0.02 apart.
+    let thick = 0.06;
+    let place = |n: u64| {
+        let (x, way) = (random(2 * n), 0.3 * random(2 * n + 1));
+        if n.is_multiple_of(2) {
+            let inner = if way < 0.0 { DVec3::new(x, -way, 0.0) } else { DVec3::new(x, 0.0, way) };
+            return (inner, if way < 0.0 { DVec3::Z } else { DVec3::Y });
+        }
+        let angle = (way / thick).clamp(-0.25 * PI, 0.25 * PI);
+        let (sin, cos) = libm::sincos(1.25 * PI - angle);
+        let beyond = (way.abs() - 0.25 * PI * thick).max(0.0);
+        let on = if way < 0.0 { DVec3::Y } else { DVec3::Z };
+        let out = DVec3::new(0.0, cos, sin);
+        (x * DVec3::X + thick * out + beyond * on, out)
+    };
+    let (positions, normals): (Vec<Vec3>, Vec<Vec3>) = (0..6000)
+        .map(|n| {
+            let (place, normal) = place(n);
+            (place.as_vec3(), normal.as_vec3())
+        })
+        .unzip();
+    let (search, nearest, spacing) = lay(&positions);
+    let lines = [vec![-0.9 * DVec3::X, 0.9 * DVec3::X]];
+    let network = Network::new(&lines, &spaced(&search, &positions, &spacing));
+    let sites = side_by_side(&positions, &normals, &nearest, &spacing);
+    let cut = LineCut::new(network, &sites);
+    assert!(cut.sheets.of.len() > 20);
+    for sheets in &cut.sheets.of {
+        let inward: Vec<DVec3> = sheets.iter().map(|sheet| sheet.inward).collect();
+        assert_eq!(inward.len(), 2, "{inward:?}");
+        assert!(inward.iter().all(|way| way.y.max(way.z) > 0.95), "{inward:?}");
+    }
+    let outer = (0..positions.len()).filter(|&n| n % 2 == 1 && positions[n].x.abs() < 0.85);
+    let outer = outer.filter(|&n| cut.is_beside(n as u32));
+    // To a few points from which all others lie far the wall is thinner.
+    let beside = outer.count();
+    assert!(beside < 40, "{beside}");
 }
