@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use super::LENGTHS;
+use super::arcs::{Arc, TAIL};
 use super::lines::Line;
 use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
@@ -33,7 +34,7 @@ const FACING: f64 = 0.8;
 
 /// A gap may be this wide, in the lesser size, if either line would stand by itself and they go straight on over
 /// it within [`STRAIGHT`]: on a thread half a dozen points may fail in a row. Two short ones may be bumps in a row.
-const GAP: f64 = 4.0;
+pub(super) const GAP: f64 = 4.0;
 
 /// Within this cosine (15°) the ends at a wide gap lead to each other.
 const STRAIGHT: f64 = 0.966;
@@ -73,17 +74,17 @@ const MEAN_WEIGHT: f64 = 1e-3;
 
 /// An end of a line.
 #[derive(Clone, Copy, Debug)]
-struct End {
+pub(super) struct End {
     line: usize,
     last: bool,
-    place: DVec3,
+    pub(super) place: DVec3,
     /// Unit vector that carries the line on.
-    outward: DVec3,
-    size: f64,
+    pub(super) outward: DVec3,
+    pub(super) size: f64,
     /// How many places its line has.
     places: usize,
-    /// Whether its line is long enough to be kept whatever its ends do.
-    stands: bool,
+    /// Whether its line, with what that goes on with over gaps, is long enough to be kept whatever its ends do.
+    pub(super) stands: bool,
 }
 
 impl End {
@@ -101,8 +102,21 @@ impl End {
             outward: outward(back, count - 1)?,
             size: of.size,
             places: count,
-            stands: of.length() >= LENGTHS[2] * of.size,
+            stands: stands(of.length(), of.size),
         })
+    }
+
+    /// The last places of its line, the end first.
+    fn tail(&self, lines: &[Line]) -> Vec<DVec3> {
+        let places = &lines[self.line].places;
+        let from_last: &mut dyn Iterator<Item = &DVec3> =
+            if self.last { &mut places.iter().rev() } else { &mut places.iter() };
+        from_last.take(TAIL).copied().collect()
+    }
+
+    /// Whether another end is of another line, or of one long enough to close on itself.
+    pub(super) fn is_apart(&self, other: &Self) -> bool {
+        self.line != other.line || self.places >= LOOP
     }
 
     /// Whether this end and another are on both sides of a gap.
@@ -110,11 +124,10 @@ impl End {
         let way = other.place - self.place;
         let length = way.length();
         let lead = way.dot(self.outward).min(-way.dot(other.outward));
-        let apart = self.line != other.line || self.places >= LOOP;
         let size = self.size.min(other.size);
         let near = |reach: f64, cosine: f64| length <= reach * size && lead >= cosine * length;
         let wide = self.stands || other.stands;
-        apart && length > 0.0 && (near(AHEAD, FACING) || (wide && near(GAP, STRAIGHT)))
+        self.is_apart(other) && length > 0.0 && (near(AHEAD, FACING) || (wide && near(GAP, STRAIGHT)))
     }
 
     /// Whether a place is where the line may go on to, at most so many sizes ahead.
@@ -170,37 +183,82 @@ pub(super) fn search(places: impl Iterator<Item = DVec3>) -> Result<Option<Searc
     if places.is_empty() { Ok(None) } else { Search::new(&places).map(Some) }
 }
 
-/// Carries the ends of lines on to corners and to other lines; whether each line's two ends meet
-/// something then.
+/// What became of lines whose ends were carried on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Joined {
+    /// Whether each line's two ends meet something.
+    pub(super) met: Vec<[bool; 2]>,
+    /// Of each line the first of those that it goes on with, over gaps, as one.
+    pub(super) run: Vec<u32>,
+}
+
+/// Carries the ends of lines on to corners and to other lines.
 ///
 /// # Errors
 /// As [`Search::new`].
-pub(super) fn join(lines: &mut [Line]) -> Result<Vec<[bool; 2]>> {
-    let mut met = vec![[false; 2]; lines.len()];
-    let mut loose = ends(lines);
-    let mut bring = |lines: &mut [Line], loose: &mut Vec<End>, meetings: &[Meeting]| {
+pub(super) fn join(lines: &mut [Line]) -> Result<Joined> {
+    let count = lines.len();
+    let loose = ends(lines);
+    let mut joining = Joining { lines, loose, met: vec![[false; 2]; count], runs: Sets::new(count) };
+    // Two edges of a corner may turn by no more than one does over a gap; a third out of their plane tells it is none.
+    let mut known = corners(&joining.loose)?;
+    known.retain(|(_, ends)| are_solid(&ends.iter().map(|&n| joining.loose[n].outward).collect::<Vec<_>>()));
+    joining.bring(&known);
+    let over_gaps = gaps(&joining.loose)?;
+    joining.bring_as_one(&over_gaps);
+    let round = round_gaps(joining.lines, &joining.loose)?;
+    joining.bring_as_one(&round);
+    let others = corners(&joining.loose)?;
+    joining.bring(&others);
+    known.extend(others);
+    let late = to_corners(&joining.loose, &known)?;
+    joining.bring(&late);
+    let run = run_into(joining.lines, &joining.loose)?;
+    joining.bring(&run);
+    let Joining { met, mut runs, .. } = joining;
+    Ok(Joined { met, run: (0..count as u32).map(|line| runs.root(line)).collect() })
+}
+
+/// Lines whose ends are carried on.
+struct Joining<'a> {
+    lines: &'a mut [Line],
+    /// The ends that meet nothing yet.
+    loose: Vec<End>,
+    met: Vec<[bool; 2]>,
+    runs: Sets,
+}
+
+impl Joining<'_> {
+    /// Carries ends on to where they meet.
+    fn bring(&mut self, meetings: &[Meeting]) {
         for (place, ends) in meetings {
-            for end in ends.iter().map(|&n| &loose[n]) {
-                extend(&mut lines[end.line], end, *place);
-                met[end.line][usize::from(end.last)] = true;
+            for end in ends.iter().map(|&n| &self.loose[n]) {
+                extend(&mut self.lines[end.line], end, *place);
+                self.met[end.line][usize::from(end.last)] = true;
             }
         }
-        loose.retain(|end| !met[end.line][usize::from(end.last)]);
-    };
-    // Two edges of a corner may turn by no more than one does over a gap; a third out of their plane tells it is none.
-    let mut known = corners(&loose)?;
-    known.retain(|(_, ends)| are_solid(&ends.iter().map(|&n| loose[n].outward).collect::<Vec<_>>()));
-    bring(lines, &mut loose, &known);
-    let over_gaps = gaps(&loose)?;
-    bring(lines, &mut loose, &over_gaps);
-    let others = corners(&loose)?;
-    bring(lines, &mut loose, &others);
-    known.extend(others);
-    let late = to_corners(&loose, &known)?;
-    bring(lines, &mut loose, &late);
-    let run = run_into(lines, &loose)?;
-    bring(lines, &mut loose, &run);
-    Ok(met)
+        self.loose.retain(|end| !self.met[end.line][usize::from(end.last)]);
+    }
+
+    /// The same of ends at gaps in one line.
+    fn bring_as_one(&mut self, meetings: &[Meeting]) {
+        for pair in meetings.iter().flat_map(|(_, ends)| ends.windows(2)) {
+            self.runs.merge(self.loose[pair[0]].line as u32, self.loose[pair[1]].line as u32);
+        }
+        self.bring(meetings);
+        let mut lengths = vec![0.0; self.lines.len()];
+        for (n, line) in (0_u32..).zip(&*self.lines) {
+            lengths[self.runs.root(n) as usize] += line.length();
+        }
+        for end in &mut self.loose {
+            end.stands = stands(lengths[self.runs.root(end.line as u32) as usize], end.size);
+        }
+    }
+}
+
+/// Whether a line as long as that is kept whatever its ends do.
+fn stands(length: f64, size: f64) -> bool {
+    length >= LENGTHS[2] * size
 }
 
 /// Lets a line end at a place.
@@ -217,17 +275,36 @@ fn extend(line: &mut Line, end: &End, place: DVec3) {
     if end.last { line.places.push(place) } else { line.places.insert(0, place) }
 }
 
-/// Where the two ends at a gap meet: of all that face each other the nearest, if that is mutual.
+/// Where the two ends at a gap meet.
 fn gaps(ends: &[End]) -> Result<Vec<Meeting>> {
+    let pairs = mutual(ends, End::faces)?.into_iter();
+    Ok(pairs.map(|[n, other]| (between(&ends[n], &ends[other]), vec![n, other])).collect())
+}
+
+/// The places by which the one of two ends goes on to the other over a gap on a circle.
+fn round_gaps(lines: &[Line], ends: &[End]) -> Result<Vec<Meeting>> {
+    let arc = |a: &End, b: &End| {
+        let tails = [a, b].map(|end| end.tail(lines));
+        Arc::between([a, b], [&tails[0], &tails[1]])
+    };
+    let pairs = mutual(ends, |a, b| arc(a, b).is_some())?.into_iter();
+    let over = |[n, other]: [usize; 2]| {
+        let way = arc(&ends[n], &ends[other]).into_iter().flat_map(|arc| arc.places());
+        way.map(move |place| (place, vec![n])).chain([(ends[other].place, vec![n, other])])
+    };
+    Ok(pairs.flat_map(over).collect())
+}
+
+/// Pairs of ends at gaps: each is the nearest of all that the other faces.
+fn mutual(ends: &[End], faces: impl Fn(&End, &End) -> bool) -> Result<Vec<[usize; 2]>> {
     let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
     let facing = |n: usize| {
         let near = search.around(ends[n].place.as_vec3(), LOOKED_AT).into_iter().map(|other| other as usize);
-        near.filter(|&other| other != n).find(|&other| ends[n].faces(&ends[other]))
+        near.filter(|&other| other != n).find(|&other| faces(&ends[n], &ends[other]))
     };
     let facing: Vec<Option<usize>> = (0..ends.len()).map(facing).collect();
-    let mutual = facing.iter().enumerate().filter_map(|(n, &other)| Some((n, other?)));
-    let mutual = mutual.filter(|&(n, other)| n < other && facing[other] == Some(n));
-    Ok(mutual.map(|(n, other)| (between(&ends[n], &ends[other]), vec![n, other])).collect())
+    let pairs = facing.iter().enumerate().filter_map(|(n, &other)| Some([n, other?]));
+    Ok(pairs.filter(|&[n, other]| n < other && facing[other] == Some(n)).collect())
 }
 
 /// The middle of the cubic that leads from one end to another as both do (Hermite's).
@@ -264,9 +341,7 @@ fn meet(a: &End, b: &End) -> bool {
     let along = |outward: DVec3| between.cross(outward).dot(cross) / square;
     let (s, t) = (along(b.outward), along(a.outward));
     let place = 0.5 * (a.place + s * a.outward + b.place + t * b.outward);
-    (a.line != b.line || a.places >= LOOP)
-        && a.reaches(place, a.corner_reach(b))
-        && b.reaches(place, b.corner_reach(a))
+    a.is_apart(b) && a.reaches(place, a.corner_reach(b)) && b.reaches(place, b.corner_reach(a))
 }
 
 /// Whether some directions span space.
@@ -357,7 +432,7 @@ mod tests {
         // Of 1.7, 3.8 and 5.2 sizes.
         for (degrees, met) in [(8.0, true), (18.0, true), (25.0, false)] {
             let mut lines = [arc(0.0, 90.0), arc(90.0 + degrees, 180.0 + degrees)];
-            assert_eq!(join(&mut lines).unwrap(), [[false, met], [met, false]], "{degrees}°");
+            assert_eq!(join(&mut lines).unwrap().met, [[false, met], [met, false]], "{degrees}°");
             if met {
                 let place = *lines[0].places.last().unwrap();
                 // The middle of the wider gap's chord is off by 0.15.
@@ -370,11 +445,11 @@ mod tests {
         for place in &mut lines[1].places {
             *place += 1.2 * place.normalize();
         }
-        assert_eq!(join(&mut lines).unwrap(), [[false; 2]; 2]);
+        assert_eq!(join(&mut lines).unwrap().met, [[false; 2]; 2]);
         // And between lines of which neither, or one, is long enough to be one by itself.
         for (from, met) in [(70.0, false), (0.0, true)] {
             let mut lines = [arc(from, 90.0), arc(108.0, 128.0)];
-            assert_eq!(join(&mut lines).unwrap(), [[false, met], [met, false]], "from {from}°");
+            assert_eq!(join(&mut lines).unwrap().met, [[false, met], [met, false]], "from {from}°");
         }
     }
 
@@ -398,12 +473,12 @@ mod tests {
                 .zip(from)
                 .map(|(way, from)| straight(from * way, (from + 9.0) * way))
                 .collect();
-            assert_eq!(join(&mut lines).unwrap(), [[true, false]; 3], "{degrees}°");
+            assert_eq!(join(&mut lines).unwrap().met, [[true, false]; 3], "{degrees}°");
             assert!(lines.iter().all(|line| line.places[0].length() < 0.1), "{degrees}°");
         }
         // None of these ends near enough for the angle.
         let mut lines = [straight(3.0 * DVec3::X, 9.0 * DVec3::X), straight(3.0 * DVec3::Y, 9.0 * DVec3::Y)];
-        assert_eq!(join(&mut lines).unwrap(), [[false; 2]; 2]);
+        assert_eq!(join(&mut lines).unwrap().met, [[false; 2]; 2]);
     }
 
     #[test]
@@ -414,7 +489,7 @@ mod tests {
         for third in [true, false] {
             let ways = &ways[..if third { 3 } else { 2 }];
             let mut lines: Vec<Line> = ways.iter().map(|&way| straight(0.7 * way, 9.0 * way)).collect();
-            assert!(join(&mut lines).unwrap().iter().all(|met| *met == [true, false]));
+            assert!(join(&mut lines).unwrap().met.iter().all(|met| *met == [true, false]));
             let off = lines[0].places[0].length();
             assert!((off < 1e-3) == third, "{off}");
         }

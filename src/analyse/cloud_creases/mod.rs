@@ -6,13 +6,15 @@
 //! 2. `ridge`: such samples are drawn together onto one line, and thinned out along it.
 //! 3. `links`: each is linked to the next on either side; `lines` keeps the chains that are sharp
 //!    enough and smooths them.
-//! 4. `corners`: ends that lead to one place, or into another line, are carried on to it.
+//! 4. `corners`: ends that lead to one place, or into another line, are carried on to it, or to each other over a
+//!    gap, straight or on a circle (`arcs`).
 //! 5. `arms`: creases too short for samples of their own, and gaps, are looked for between the ends of lines.
 //!
 //! Sizes are told in spacings of the points. Each stage takes what the one before made in the order of
 //! the points, which lie along a Morton curve, so that nothing depends on the order of the input or
 //! on the threads.
 
+mod arcs;
 mod arms;
 mod bowl;
 mod corners;
@@ -33,6 +35,7 @@ use super::nearest::{Search, Spacings, spacing};
 use super::sets::Sets;
 use crate::error::Result;
 use crate::model::cloud::Cloud;
+use corners::Joined;
 pub use corners::meeting;
 use lines::Line;
 use links::Chain;
@@ -82,8 +85,8 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     let sharp = libm::cos(sought.degrees.to_radians());
     let chains = chains(points, all.into_par_iter(), WEAK_SHARE * sought.degrees)?;
     let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
-    let met = corners::join(&mut lines)?;
-    let mut lines = worth_it(lines, &met, sought.shortest);
+    let joined = corners::join(&mut lines)?;
+    let mut lines = worth_it(lines, &joined, sought.shortest);
     lines.extend(arms::between_ends(&lines, points, sharp)?);
     Ok(lines.into_iter().map(Line::whole).collect())
 }
@@ -109,8 +112,8 @@ fn chains(
     links::chains(&ridge::ridge(points.samples(shown_by, libm::cos(degrees.to_radians())))?)
 }
 
-/// The lines that are long enough for what they meet.
-fn worth_it(lines: Vec<Line>, met: &[[bool; 2]], shortest: f64) -> Vec<Line> {
+/// The lines that are long enough for what they meet, those that go on over gaps as one.
+fn worth_it(lines: Vec<Line>, joined: &Joined, shortest: f64) -> Vec<Line> {
     let mut sets = Sets::new(lines.len());
     let mut ends: Vec<([u64; 3], u32)> = Vec::new();
     for (n, line) in (0_u32..).zip(&lines) {
@@ -120,15 +123,17 @@ fn worth_it(lines: Vec<Line>, met: &[[bool; 2]], shortest: f64) -> Vec<Line> {
     for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
         sets.merge(pair[0].1, pair[1].1);
     }
-    let mut together = vec![0.0; lines.len()];
-    for (n, line) in (0_u32..).zip(&lines) {
-        together[sets.root(n) as usize] += line.length();
+    let (mut together, mut as_one) = (vec![0.0; lines.len()], vec![(0.0, 0); lines.len()]);
+    for (n, line) in lines.iter().enumerate() {
+        together[sets.root(n as u32) as usize] += line.length();
+        let (length, loose) = &mut as_one[joined.run[n] as usize];
+        *length += line.length();
+        *loose += if line.closed { 0 } else { joined.met[n].iter().filter(|met| !**met).count() };
     }
-    let long = |n: usize, line: &Line, root: u32| {
-        let loose = if line.closed { 0 } else { met[n].iter().filter(|met| !**met).count() };
-        together[root as usize] >= shortest && line.length() >= LENGTHS[loose] * line.size
+    let mut is_long = |n: usize, line: &Line| {
+        let (length, loose) = as_one[joined.run[n] as usize];
+        together[sets.root(n as u32) as usize] >= shortest && length >= LENGTHS[loose] * line.size
     };
-    let keep: Vec<bool> =
-        lines.iter().enumerate().map(|(n, line)| long(n, line, sets.root(n as u32))).collect();
+    let keep: Vec<bool> = lines.iter().enumerate().map(|(n, line)| is_long(n, line)).collect();
     lines.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(line, _)| line).collect()
 }
