@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::LENGTHS;
 use super::arcs::{Arc, TAIL};
-use super::lines::Line;
+use super::lines::{Line, Parabola};
 use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
 use crate::error::Result;
@@ -51,6 +51,18 @@ const ARC: usize = 3;
 /// ... which it does if they differ by more than this (cosine of 15°): noise turns them by less.
 const CURVED: f64 = 0.966;
 
+/// A line bends as far as the last so many of its places before its end, taken together, tell...
+const BENT: usize = 8;
+
+/// ... by more than so many times what they lie off their parabola.
+const SURE: f64 = 3.0;
+
+/// Times that lines which bend are carried on to where they meet...
+const ROUNDS: usize = 4;
+
+/// ... which all have to pass within this share of their size.
+const SHARED: f64 = 0.2;
+
 /// Ends looked at around one end.
 const LOOKED_AT: usize = 16;
 
@@ -80,6 +92,8 @@ pub(super) struct End {
     pub(super) place: DVec3,
     /// Unit vector that carries the line on.
     pub(super) outward: DVec3,
+    /// How its line goes on, if it bends there.
+    bend: Option<Parabola>,
     pub(super) size: f64,
     /// How many places its line has.
     places: usize,
@@ -100,10 +114,17 @@ impl End {
             last,
             place,
             outward: outward(back, count - 1)?,
+            bend: bend(back, count - 1),
             size: of.size,
             places: count,
             stands: stands(of.length(), of.size),
         })
+    }
+
+    /// The line, a place and a unit vector, on which it goes on beside a place.
+    fn toward(&self, place: DVec3) -> [DVec3; 2] {
+        let way = (place - self.place).dot(self.outward).max(0.0);
+        self.bend.map_or([self.place, self.outward], |bend| bend.ahead(way))
     }
 
     /// The last places of its line, the end first.
@@ -150,6 +171,14 @@ impl End {
         let reached = places.filter(|&place| self.reaches(place, most));
         reached.min_by(|a, b| a.distance(self.place).total_cmp(&b.distance(self.place)))
     }
+}
+
+/// The parabola on which a line leads on that bends, of places so many back from its end, the last given by their number.
+fn bend(back: impl Fn(usize) -> DVec3, last: usize) -> Option<Parabola> {
+    let places: Vec<DVec3> = (0..=last.min(BENT)).rev().map(back).collect();
+    let parabola = Parabola::through(&places, places.len() - 1)?;
+    let half = 0.5 * places[0].distance(places[places.len() - 1]);
+    (0.5 * half * half * parabola.bend.length() > SURE * parabola.off).then_some(parabola)
 }
 
 /// The direction in which a line leads on, of places so many back from its end, the last given by their number.
@@ -362,10 +391,24 @@ fn corner(ends: &[End], mut of: Vec<usize>) -> Option<Meeting> {
             return None;
         }
         if reaching.len() == of.len() {
-            return Some((place, of));
+            let of_all = || of.iter().map(|&n| &ends[n]);
+            return Some((bent_meeting(of_all, place).unwrap_or(place), of));
         }
         of = reaching;
     }
+}
+
+/// The place near another at which some ends that are carried on as their lines bend meet, if they do.
+fn bent_meeting<'a, I: Iterator<Item = &'a End>>(ends: impl Fn() -> I, mut place: DVec3) -> Option<DVec3> {
+    let straight = place;
+    for _ in 0..ROUNDS {
+        place = meeting(&ends().map(|end| end.toward(place)).collect::<Vec<_>>());
+    }
+    let passes = |end: &End| {
+        let [at, way] = end.toward(place);
+        (place - at).reject_from_normalized(way).length() <= SHARED * end.size
+    };
+    ends().all(|end| place.distance(straight) <= AHEAD * end.size && passes(end)).then_some(place)
 }
 
 /// The place nearest to all of some lines, each of which has a place and a direction (unit vector).

@@ -88,33 +88,62 @@ fn smoothed(places: &[DVec3], closed: bool) -> Vec<DVec3> {
         .collect()
 }
 
-/// The place on the parabola through some places at one of them; by length of the way.
+/// The place on the parabola through some places at one of them.
 fn parabola(window: &[DVec3], at: usize) -> DVec3 {
-    let mut way = vec![0.0; window.len()];
-    for n in 1..window.len() {
-        way[n] = way[n - 1] + window[n].distance(window[n - 1]);
-    }
-    let span = way[window.len() - 1];
-    // Three places are on their parabola as they are.
-    let fitted = window.len() > 3 && span > 0.0;
-    if !fitted {
-        return window[at];
-    }
-    let term = |n: usize| {
-        let t = (way[n] - way[at]) / span;
-        DVec3::new(1.0, t, t * t)
-    };
-    let (mut square, mut sides) = (DMat3::ZERO, [DVec3::ZERO; 3]);
-    for (n, place) in window.iter().enumerate() {
-        let t = term(n);
-        square += DMat3::from_cols(t.x * t, t.y * t, t.z * t);
-        for (side, value) in sides.iter_mut().zip((*place - window[at]).to_array()) {
-            *side += value * t;
-        }
-    }
-    let first = square.inverse().row(0);
-    let moved = DVec3::from_array(sides.map(|side| first.dot(side)));
+    let moved = Parabola::through(window, at).map_or(DVec3::ZERO, |parabola| parabola.place - window[at]);
     if moved.is_finite() { window[at] + moved } else { window[at] }
+}
+
+/// A parabola, by length of the way from one of its places.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parabola {
+    pub(super) place: DVec3,
+    /// First and second derivative there.
+    pub(super) slope: DVec3,
+    pub(super) bend: DVec3,
+    /// How far the places it goes through lie off it, root mean square.
+    pub(super) off: f64,
+}
+
+impl Parabola {
+    /// That of least squares through some places, from one of them on; `None` of three or fewer, which are on theirs
+    /// as they are.
+    pub(super) fn through(window: &[DVec3], at: usize) -> Option<Self> {
+        let mut way = vec![0.0; window.len()];
+        for n in 1..window.len() {
+            way[n] = way[n - 1] + window[n].distance(window[n - 1]);
+        }
+        let span = *way.last()?;
+        let fitted = window.len() > 3 && span > 0.0;
+        if !fitted {
+            return None;
+        }
+        let term = |n: usize| {
+            let t = (way[n] - way[at]) / span;
+            DVec3::new(1.0, t, t * t)
+        };
+        let (mut square, mut sides) = (DMat3::ZERO, [DVec3::ZERO; 3]);
+        for (n, place) in window.iter().enumerate() {
+            let t = term(n);
+            square += DMat3::from_cols(t.x * t, t.y * t, t.z * t);
+            for (side, value) in sides.iter_mut().zip((*place - window[at]).to_array()) {
+                *side += value * t;
+            }
+        }
+        let inverse = square.inverse();
+        // Of each coordinate: value, slope and half the bend, by span.
+        let of = DMat3::from_cols_array_2d(&sides.map(|side| (inverse * side).to_array())).transpose();
+        let off = |n: usize| (window[n] - window[at] - of * term(n)).length_squared();
+        let off = ((0..window.len()).map(off).sum::<f64>() / window.len() as f64).sqrt();
+        let [place, slope, half] = [of.x_axis, of.y_axis, of.z_axis];
+        Some(Self { place: window[at] + place, slope: slope / span, bend: 2.0 / (span * span) * half, off })
+    }
+
+    /// Its place and unit tangent so far ahead.
+    pub(super) fn ahead(&self, way: f64) -> [DVec3; 2] {
+        let place = self.place + way * self.slope + 0.5 * way * way * self.bend;
+        [place, (self.slope + way * self.bend).normalize_or_zero()]
+    }
 }
 
 #[cfg(test)]
