@@ -1,10 +1,10 @@
 //! Circles on which a line goes on over a gap, as the rim of a hole does where some of its points fail in a row.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::corners::{End, GAP};
+use super::corners::End;
 use super::plane::Moments;
 
 /// The last so many places before either end tell the circle.
@@ -13,8 +13,14 @@ pub(super) const TAIL: usize = 9;
 /// They lie on it within this share of the size: those of two straight lines are off by more.
 const ON: f64 = 0.1;
 
-/// A gap spans at most this angle, and no more than what is seen of the circle before both ends does.
-const WIDEST: f64 = FRAC_PI_2;
+/// A gap spans at most half a turn, and no more than what is seen of the circle before both ends does...
+const WIDEST: f64 = PI;
+
+/// ... and is at most this long, in sizes.
+const LONGEST: f64 = 6.0;
+
+/// Beside at least this share of the places along it the surface must not be smooth: the flat of a shaft may lie there.
+const CREASED: f64 = 0.75;
 
 /// Places on it lie apart by this share of the size, as those of lines do.
 const STEP: f64 = 0.32;
@@ -37,7 +43,8 @@ impl Arc {
     /// end first.
     pub(super) fn between([a, b]: [&End; 2], tails: [&[DVec3]; 2]) -> Option<Self> {
         let size = a.size.min(b.size);
-        if !(a.is_apart(b) && a.stands && b.stands && a.place.distance(b.place) <= GAP * size) {
+        let near = a.place.distance(b.place) <= LONGEST * size;
+        if !(near && a.is_apart(b) && a.stands && b.stands) {
             return None;
         }
         let mut arc = Self::through(tails, size)?;
@@ -49,7 +56,8 @@ impl Arc {
         arc.angle = libm::atan2(to.dot(arc.axes[1]), to.dot(arc.axes[0])).rem_euclid(TAU);
         let length = |tail: &[DVec3]| tail.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
         let seen = tails.map(length).iter().sum::<f64>() / arc.radius;
-        (facing && arc.angle <= WIDEST.min(seen)).then_some(arc)
+        let short = arc.angle <= WIDEST.min(seen) && arc.angle * arc.radius <= LONGEST * size;
+        (facing && short).then_some(arc)
     }
 
     /// The circle of least squares (Kåsa 1976) through some places, if they lie on it, with any axes.
@@ -90,6 +98,16 @@ impl Arc {
         ((way - height * self.normal()).length() - self.radius).hypot(height)
     }
 
+    /// Whether it lies where the surface is not smooth.
+    pub(super) fn is_creased(&self, smooth: &impl Fn(DVec3) -> bool) -> bool {
+        let (mut creased, mut all) = (0, 0);
+        for place in self.places() {
+            creased += u32::from(!smooth(place));
+            all += 1;
+        }
+        f64::from(creased) >= CREASED * f64::from(all)
+    }
+
     /// Places along it, between its ends.
     pub(super) fn places(&self) -> impl Iterator<Item = DVec3> + use<> {
         let (arc, count) = (*self, (self.angle * self.radius / (STEP * self.size)).ceil() as usize);
@@ -97,5 +115,54 @@ impl Arc {
             let (sin, cos) = libm::sincos(arc.angle * n as f64 / count as f64);
             arc.center + arc.radius * (cos * arc.axes[0] + sin * arc.axes[1])
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::corners::join;
+    use super::super::lines::Line;
+    use super::*;
+
+    /// Of a circle of radius 3 sizes what lies between two angles, degrees.
+    fn rim(from: f64, to: f64) -> Line {
+        let count = ((to - from).to_radians() * 3.0 / STEP).ceil();
+        let at = |n: u32| {
+            let (sin, cos) = libm::sincos((from + (to - from) * f64::from(n) / count).to_radians());
+            DVec3::new(3.0 * cos, 3.0 * sin, 1.0)
+        };
+        Line { places: (0..=count as u32).map(at).collect(), closed: false, size: 1.0 }
+    }
+
+    #[test]
+    fn a_rim_with_a_gap_is_closed_on_its_circle_where_the_surface_is_not_smooth() {
+        for (gap, smooth, closed) in
+            [(40.0, false, true), (90.0, false, true), (90.0, true, false), (130.0, false, false)]
+        {
+            let mut lines = [rim(0.0, 360.0 - gap)];
+            assert_eq!(join(&mut lines, &|_| smooth).unwrap().met, [[closed; 2]], "{gap}°, smooth: {smooth}");
+            let places = &lines[0].places;
+            for pair in places.windows(2) {
+                let middle = pair[0].midpoint(pair[1]);
+                let off = (middle.truncate().length() - 3.0).hypot(middle.z - 1.0);
+                assert!(off < 0.01, "{gap}°: {middle}");
+            }
+            assert_eq!(places[0] == places[places.len() - 1], closed);
+        }
+    }
+
+    #[test]
+    fn two_straight_lines_go_on_on_no_circle() {
+        let (sin, cos) = libm::sincos(0.6);
+        let line = |way: DVec3| Line {
+            places: (0..=30).map(|n| (0.7 + 0.3 * f64::from(n)) * way).collect(),
+            closed: false,
+            size: 1.0,
+        };
+        let lines = [line(DVec3::new(cos, sin, 0.0)), line(DVec3::new(cos, -sin, 0.0))];
+        let tails = [0, 1].map(|n: usize| lines[n].places[..TAIL].to_vec());
+        assert!(Arc::through([&tails[0], &tails[1]], 1.0).is_none());
     }
 }

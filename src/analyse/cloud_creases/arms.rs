@@ -5,7 +5,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::corners::search;
-use super::hinge::Hinge;
 use super::lines::Line;
 use super::plane::Moments;
 use super::samples::{Points, bent_as_shown, cutoff, explains};

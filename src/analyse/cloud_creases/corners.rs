@@ -34,7 +34,7 @@ const FACING: f64 = 0.8;
 
 /// A gap may be this wide, in the lesser size, if either line would stand by itself and they go straight on over
 /// it within [`STRAIGHT`]: on a thread half a dozen points may fail in a row. Two short ones may be bumps in a row.
-pub(super) const GAP: f64 = 4.0;
+const GAP: f64 = 4.0;
 
 /// Within this cosine (15°) the ends at a wide gap lead to each other.
 const STRAIGHT: f64 = 0.966;
@@ -221,11 +221,11 @@ pub(super) struct Joined {
     pub(super) run: Vec<u32>,
 }
 
-/// Carries the ends of lines on to corners and to other lines.
+/// Carries the ends of lines on to corners and to other lines; `smooth` tells whether the surface is where a place lies.
 ///
 /// # Errors
 /// As [`Search::new`].
-pub(super) fn join(lines: &mut [Line]) -> Result<Joined> {
+pub(super) fn join(lines: &mut [Line], smooth: &impl Fn(DVec3) -> bool) -> Result<Joined> {
     let count = lines.len();
     let loose = ends(lines);
     let mut joining = Joining { lines, loose, met: vec![[false; 2]; count], runs: Sets::new(count) };
@@ -235,7 +235,7 @@ pub(super) fn join(lines: &mut [Line]) -> Result<Joined> {
     joining.bring(&known);
     let over_gaps = gaps(&joining.loose)?;
     joining.bring_as_one(&over_gaps);
-    let round = round_gaps(joining.lines, &joining.loose)?;
+    let round = round_gaps(joining.lines, &joining.loose, smooth)?;
     joining.bring_as_one(&round);
     let others = corners(&joining.loose)?;
     joining.bring(&others);
@@ -311,10 +311,10 @@ fn gaps(ends: &[End]) -> Result<Vec<Meeting>> {
 }
 
 /// The places by which the one of two ends goes on to the other over a gap on a circle.
-fn round_gaps(lines: &[Line], ends: &[End]) -> Result<Vec<Meeting>> {
+fn round_gaps(lines: &[Line], ends: &[End], smooth: &impl Fn(DVec3) -> bool) -> Result<Vec<Meeting>> {
     let arc = |a: &End, b: &End| {
         let tails = [a, b].map(|end| end.tail(lines));
-        Arc::between([a, b], [&tails[0], &tails[1]])
+        Arc::between([a, b], [&tails[0], &tails[1]]).filter(|arc| arc.is_creased(smooth))
     };
     let pairs = mutual(ends, |a, b| arc(a, b).is_some())?.into_iter();
     let over = |[n, other]: [usize; 2]| {
@@ -475,7 +475,7 @@ mod tests {
         // Of 1.7, 3.8 and 5.2 sizes.
         for (degrees, met) in [(8.0, true), (18.0, true), (25.0, false)] {
             let mut lines = [arc(0.0, 90.0), arc(90.0 + degrees, 180.0 + degrees)];
-            assert_eq!(join(&mut lines).unwrap().met, [[false, met], [met, false]], "{degrees}°");
+            assert_eq!(join(&mut lines, &|_| true).unwrap().met, [[false, met], [met, false]], "{degrees}°");
             if met {
                 let place = *lines[0].places.last().unwrap();
                 // The middle of the wider gap's chord is off by 0.15.
@@ -488,11 +488,15 @@ mod tests {
         for place in &mut lines[1].places {
             *place += 1.2 * place.normalize();
         }
-        assert_eq!(join(&mut lines).unwrap().met, [[false; 2]; 2]);
+        assert_eq!(join(&mut lines, &|_| true).unwrap().met, [[false; 2]; 2]);
         // And between lines of which neither, or one, is long enough to be one by itself.
         for (from, met) in [(70.0, false), (0.0, true)] {
             let mut lines = [arc(from, 90.0), arc(108.0, 128.0)];
-            assert_eq!(join(&mut lines).unwrap().met, [[false, met], [met, false]], "from {from}°");
+            assert_eq!(
+                join(&mut lines, &|_| true).unwrap().met,
+                [[false, met], [met, false]],
+                "from {from}°"
+            );
         }
     }
 
@@ -516,12 +520,12 @@ mod tests {
                 .zip(from)
                 .map(|(way, from)| straight(from * way, (from + 9.0) * way))
                 .collect();
-            assert_eq!(join(&mut lines).unwrap().met, [[true, false]; 3], "{degrees}°");
+            assert_eq!(join(&mut lines, &|_| true).unwrap().met, [[true, false]; 3], "{degrees}°");
             assert!(lines.iter().all(|line| line.places[0].length() < 0.1), "{degrees}°");
         }
         // None of these ends near enough for the angle.
         let mut lines = [straight(3.0 * DVec3::X, 9.0 * DVec3::X), straight(3.0 * DVec3::Y, 9.0 * DVec3::Y)];
-        assert_eq!(join(&mut lines).unwrap().met, [[false; 2]; 2]);
+        assert_eq!(join(&mut lines, &|_| true).unwrap().met, [[false; 2]; 2]);
     }
 
     #[test]
@@ -532,7 +536,7 @@ mod tests {
         for third in [true, false] {
             let ways = &ways[..if third { 3 } else { 2 }];
             let mut lines: Vec<Line> = ways.iter().map(|&way| straight(0.7 * way, 9.0 * way)).collect();
-            assert!(join(&mut lines).unwrap().met.iter().all(|met| *met == [true, false]));
+            assert!(join(&mut lines, &|_| true).unwrap().met.iter().all(|met| *met == [true, false]));
             let off = lines[0].places[0].length();
             assert!((off < 1e-3) == third, "{off}");
         }

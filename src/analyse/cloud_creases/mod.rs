@@ -85,7 +85,7 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     let sharp = libm::cos(sought.degrees.to_radians());
     let chains = chains(points, all.into_par_iter(), WEAK_SHARE * sought.degrees)?;
     let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
-    let joined = corners::join(&mut lines)?;
+    let joined = corners::join(&mut lines, &|place| points.foot(place).is_some())?;
     let mut lines = worth_it(lines, &joined, sought.shortest);
     lines.extend(arms::between_ends(&lines, points, sharp)?);
     Ok(lines.into_iter().map(Line::whole).collect())

@@ -44,8 +44,13 @@ const ROUGH_AMONG_MANY: f64 = 1.1;
 /// Points looked at around one: a few spacings in all directions.
 const FEWEST: f64 = 32.0;
 
-/// Of these the nearest, which are looked at alone where all show no crease: a third face may lie that near.
+/// Of these the nearest, which are looked at alone where all show no crease: a third face may lie that near, such as
+/// the other side of a wall of three spacings.
 const CLOSE: usize = 20;
+
+/// A hinge misses so few by less than this share of the spacing, root mean square, beyond what noise does: one that
+/// leaves anything to explain leans on points of a third face.
+const ALL_BUT: f64 = 0.01;
 
 /// The most, so that the work stays bounded.
 const MOST: f64 = 160.0;
@@ -197,7 +202,9 @@ impl Points<'_> {
         // A neighbourhood no larger than without noise has none of its points to spare.
         let many = points.len() > FEWEST as usize;
         let shown = |points: &[DVec3]| shown(points, noise, many, turn);
-        let hinge = shown(&points).or_else(|| (!many).then(|| shown(points.get(..CLOSE)?))?)?;
+        let exact = |hinge: &Hinge| hinge.scatter <= ALL_BUT * ALL_BUT + LOOSE_NOISE * noise * noise;
+        let close = || shown(points.get(..CLOSE).filter(|_| !many)?).filter(exact);
+        let hinge = shown(&points).or_else(close)?;
         Some(Sample {
             place: here + spacing * hinge.foot,
             along: hinge.along,
