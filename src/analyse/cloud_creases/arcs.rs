@@ -126,12 +126,12 @@ mod tests {
     use super::super::lines::Line;
     use super::*;
 
-    /// Of a circle of radius 3 sizes what lies between two angles, degrees.
+    /// Of a circle of radius 2 sizes what lies between two angles, degrees.
     fn rim(from: f64, to: f64) -> Line {
-        let count = ((to - from).to_radians() * 3.0 / STEP).ceil();
+        let count = ((to - from).to_radians() * 2.0 / STEP).ceil();
         let at = |n: u32| {
             let (sin, cos) = libm::sincos((from + (to - from) * f64::from(n) / count).to_radians());
-            DVec3::new(3.0 * cos, 3.0 * sin, 1.0)
+            DVec3::new(2.0 * cos, 2.0 * sin, 1.0)
         };
         Line { places: (0..=count as u32).map(at).collect(), closed: false, size: 1.0 }
     }
@@ -139,15 +139,15 @@ mod tests {
     #[test]
     fn a_rim_with_a_gap_is_closed_on_its_circle_where_the_surface_is_not_smooth() {
         for (gap, smooth, closed) in
-            [(40.0, false, true), (90.0, false, true), (90.0, true, false), (130.0, false, false)]
+            [(80.0, false, true), (120.0, false, true), (120.0, true, false), (170.0, false, false)]
         {
             let mut lines = [rim(0.0, 360.0 - gap)];
             assert_eq!(join(&mut lines, &|_| smooth).unwrap().met, [[closed; 2]], "{gap}°, smooth: {smooth}");
             let places = &lines[0].places;
             for pair in places.windows(2) {
                 let middle = pair[0].midpoint(pair[1]);
-                let off = (middle.truncate().length() - 3.0).hypot(middle.z - 1.0);
-                assert!(off < 0.01, "{gap}°: {middle}");
+                let off = (middle.truncate().length() - 2.0).hypot(middle.z - 1.0);
+                assert!(off < 0.015, "{gap}°: {middle}");
             }
             assert_eq!(places[0] == places[places.len() - 1], closed);
         }

@@ -234,9 +234,11 @@ pub(super) fn join(lines: &mut [Line], smooth: &impl Fn(DVec3) -> bool) -> Resul
     known.retain(|(_, ends)| are_solid(&ends.iter().map(|&n| joining.loose[n].outward).collect::<Vec<_>>()));
     joining.bring(&known);
     let over_gaps = gaps(&joining.loose)?;
-    joining.bring_as_one(&over_gaps);
+    joining.runs_on(over_gaps.iter().map(|(_, ends)| [ends[0], ends[1]]));
+    joining.bring(&over_gaps);
+    joining.measure();
     let round = round_gaps(joining.lines, &joining.loose, smooth)?;
-    joining.bring_as_one(&round);
+    joining.go_round(round);
     let others = corners(&joining.loose)?;
     joining.bring(&others);
     known.extend(others);
@@ -269,12 +271,32 @@ impl Joining<'_> {
         self.loose.retain(|end| !self.met[end.line][usize::from(end.last)]);
     }
 
-    /// The same of ends at gaps in one line.
-    fn bring_as_one(&mut self, meetings: &[Meeting]) {
-        for pair in meetings.iter().flat_map(|(_, ends)| ends.windows(2)) {
-            self.runs.merge(self.loose[pair[0]].line as u32, self.loose[pair[1]].line as u32);
+    /// Carries the first end of each pair on to the other by the places between.
+    fn go_round(&mut self, gaps: Vec<([usize; 2], Vec<DVec3>)>) {
+        self.runs_on(gaps.iter().map(|(pair, _)| *pair));
+        for (pair, places) in gaps {
+            let [a, b] = pair.map(|n| &self.loose[n]);
+            let own = &mut self.lines[a.line].places;
+            for place in places.into_iter().chain([b.place]) {
+                if a.last { own.push(place) } else { own.insert(0, place) }
+            }
+            for end in [a, b] {
+                self.met[end.line][usize::from(end.last)] = true;
+            }
         }
-        self.bring(meetings);
+        self.loose.retain(|end| !self.met[end.line][usize::from(end.last)]);
+        self.measure();
+    }
+
+    /// Takes the lines of both ends of gaps for one.
+    fn runs_on(&mut self, gaps: impl Iterator<Item = [usize; 2]>) {
+        for [a, b] in gaps {
+            self.runs.merge(self.loose[a].line as u32, self.loose[b].line as u32);
+        }
+    }
+
+    /// Tells anew which of the ends left are of lines that stand.
+    fn measure(&mut self) {
         let mut lengths = vec![0.0; self.lines.len()];
         for (n, line) in (0_u32..).zip(&*self.lines) {
             lengths[self.runs.root(n) as usize] += line.length();
@@ -310,18 +332,18 @@ fn gaps(ends: &[End]) -> Result<Vec<Meeting>> {
     Ok(pairs.map(|[n, other]| (between(&ends[n], &ends[other]), vec![n, other])).collect())
 }
 
-/// The places by which the one of two ends goes on to the other over a gap on a circle.
-fn round_gaps(lines: &[Line], ends: &[End], smooth: &impl Fn(DVec3) -> bool) -> Result<Vec<Meeting>> {
+/// Pairs of ends at a gap over which a line goes on round a circle, each with the places on that.
+fn round_gaps(
+    lines: &[Line],
+    ends: &[End],
+    smooth: &impl Fn(DVec3) -> bool,
+) -> Result<Vec<([usize; 2], Vec<DVec3>)>> {
     let arc = |a: &End, b: &End| {
         let tails = [a, b].map(|end| end.tail(lines));
         Arc::between([a, b], [&tails[0], &tails[1]]).filter(|arc| arc.is_creased(smooth))
     };
     let pairs = mutual(ends, |a, b| arc(a, b).is_some())?.into_iter();
-    let over = |[n, other]: [usize; 2]| {
-        let way = arc(&ends[n], &ends[other]).into_iter().flat_map(|arc| arc.places());
-        way.map(move |place| (place, vec![n])).chain([(ends[other].place, vec![n, other])])
-    };
-    Ok(pairs.flat_map(over).collect())
+    Ok(pairs.filter_map(|[a, b]| Some(([a, b], arc(&ends[a], &ends[b])?.places().collect()))).collect())
 }
 
 /// Pairs of ends at gaps: each is the nearest of all that the other faces.
