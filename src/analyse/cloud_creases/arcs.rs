@@ -6,6 +6,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::corners::End;
 use super::plane::Moments;
+use super::ridge::APART;
 
 /// The last so many places before either end tell the circle.
 pub(super) const TAIL: usize = 9;
@@ -21,9 +22,6 @@ const LONGEST: f64 = 6.0;
 
 /// Beside at least this share of the places along it the surface must not be smooth: the flat of a shaft may lie there.
 const CREASED: f64 = 0.75;
-
-/// Places on it lie apart by this share of the size, as those of lines do.
-const STEP: f64 = 0.32;
 
 /// A circle's part from one end to another.
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +108,7 @@ impl Arc {
 
     /// Places along it, between its ends.
     pub(super) fn places(&self) -> impl Iterator<Item = DVec3> + use<> {
-        let (arc, count) = (*self, (self.angle * self.radius / (STEP * self.size)).ceil() as usize);
+        let (arc, count) = (*self, (self.angle * self.radius / (APART * self.size)).ceil() as usize);
         (1..count.max(1)).map(move |n| {
             let (sin, cos) = libm::sincos(arc.angle * n as f64 / count as f64);
             arc.center + arc.radius * (cos * arc.axes[0] + sin * arc.axes[1])
@@ -128,7 +126,7 @@ mod tests {
 
     /// Of a circle of radius 2 sizes what lies between two angles, degrees.
     fn rim(from: f64, to: f64) -> Line {
-        let count = ((to - from).to_radians() * 2.0 / STEP).ceil();
+        let count = ((to - from).to_radians() * 2.0 / APART).ceil();
         let at = |n: u32| {
             let (sin, cos) = libm::sincos((from + (to - from) * f64::from(n) / count).to_radians());
             DVec3::new(2.0 * cos, 2.0 * sin, 1.0)

@@ -57,7 +57,8 @@ const BENT: usize = 8;
 /// ... by more than so many times what they lie off their parabola.
 const SURE: f64 = 3.0;
 
-/// Times that lines which bend are carried on to where they meet...
+/// Times that lines which bend are carried on to where they meet, each from where they did before: what is left to go
+/// shrinks by the angle that they turn by on the way...
 const ROUNDS: usize = 4;
 
 /// ... which all have to pass within this share of their size.
@@ -285,7 +286,6 @@ impl Joining<'_> {
             }
         }
         self.loose.retain(|end| !self.met[end.line][usize::from(end.last)]);
-        self.measure();
     }
 
     /// Takes the lines of both ends of gaps for one.
@@ -295,7 +295,7 @@ impl Joining<'_> {
         }
     }
 
-    /// Tells anew which of the ends left are of lines that stand.
+    /// Tells anew which of the ends left are of lines that stand, which gaps alone ask.
     fn measure(&mut self) {
         let mut lengths = vec![0.0; self.lines.len()];
         for (n, line) in (0_u32..).zip(&*self.lines) {

@@ -26,7 +26,7 @@ const FEWEST: usize = 3;
 const ROUNDS: usize = 2;
 
 /// Samples kept lie apart by at least this share of their size: a spacing.
-const APART: f64 = 0.32;
+pub(super) const APART: f64 = 0.32;
 
 /// Whether two samples may be of one crease, by their directions.
 pub(super) fn alike(a: &Sample, b: &Sample) -> bool {

@@ -24,7 +24,7 @@ pub(super) struct Sample {
     /// As [`Hinge::rounded`], in a neighbourhood as large as noise calls for; 0 in one that is no larger than
     /// it is without, in which curved sides may count for more than the noise.
     pub(super) rounded: f64,
-    /// Radius of the neighbourhood that showed it.
+    /// Radius of the whole neighbourhood looked at, though its nearest points alone may show it.
     pub(super) size: f64,
 }
 
@@ -50,7 +50,7 @@ const CLOSE: usize = 20;
 
 /// A hinge misses so few by less than this share of the spacing, root mean square, beyond what noise does: one that
 /// leaves anything to explain leans on points of a third face.
-const ALL_BUT: f64 = 0.01;
+const UNEXPLAINED: f64 = 0.01;
 
 /// The most, so that the work stays bounded.
 const MOST: f64 = 160.0;
@@ -202,7 +202,7 @@ impl Points<'_> {
         // A neighbourhood no larger than without noise has none of its points to spare.
         let many = points.len() > FEWEST as usize;
         let shown = |points: &[DVec3]| shown(points, noise, many, turn);
-        let exact = |hinge: &Hinge| hinge.scatter <= ALL_BUT * ALL_BUT + LOOSE_NOISE * noise * noise;
+        let exact = |hinge: &Hinge| hinge.scatter <= UNEXPLAINED * UNEXPLAINED + LOOSE_NOISE * noise * noise;
         let close = || shown(points.get(..CLOSE).filter(|_| !many)?).filter(exact);
         let hinge = shown(&points).or_else(close)?;
         Some(Sample {
