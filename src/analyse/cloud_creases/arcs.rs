@@ -4,21 +4,16 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::corners::End;
+use super::LONGEST;
+use super::ends::End;
 use super::plane::Moments;
 use super::ridge::APART;
 
-/// The last so many places before either end tell the circle.
-pub(super) const TAIL: usize = 9;
-
-/// They lie on it within this share of the size: those of two straight lines are off by more.
+/// The last places before either end lie on the circle within this share of the size: those of two straight lines are off by more.
 const ON: f64 = 0.1;
 
-/// A gap spans at most half a turn, and no more than what is seen of the circle before both ends does...
+/// A gap spans at most half a turn, and no more than what is seen of the circle before both ends does.
 const WIDEST: f64 = PI;
-
-/// ... and is at most this long, in sizes.
-const LONGEST: f64 = 6.0;
 
 /// Beside at least this share of the places along it the surface must not be smooth: the flat of a shaft may lie there.
 const CREASED: f64 = 0.75;
@@ -121,6 +116,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::super::corners::join;
+    use super::super::ends::TAIL;
     use super::super::lines::Line;
     use super::*;
 

@@ -4,14 +4,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::LONGEST;
 use super::corners::search;
 use super::lines::Line;
 use super::plane::Moments;
 use super::samples::{Points, bent_as_shown, cutoff, explains};
 use crate::error::Result;
-
-/// Ends at most this many sizes apart: longer creases have samples of their own.
-const LONGEST: f64 = 6.0;
 
 /// Ends looked at around one, and places of lines around one of an arm.
 const LOOKED_AT: usize = 16;

@@ -2,60 +2,19 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::LENGTHS;
-use super::arcs::{Arc, TAIL};
-use super::lines::{Line, Parabola};
+use super::arcs::Arc;
+use super::ends::{AHEAD, End, stands};
+use super::lines::Line;
 use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
 use crate::error::Result;
 
-/// How far beyond its last sample a line may be carried on, in its size: near a corner the third
-/// face hides it...
-const AHEAD: f64 = 1.8;
-
-/// ... for longer at a sharp one, at most so far...
-const TO_SHARP_CORNER: f64 = 6.0;
-
-/// ... and so far to a corner at which others are known to meet: by chance two sizes and more lie between the last
-/// sample of an edge of a cube and its corner.
+/// A line may be carried on this far, in its size, to a corner at which others are known to meet: by chance two sizes
+/// and more lie between the last sample of an edge of a cube and its corner.
 const TO_KNOWN_CORNER: f64 = 4.0;
-
-/// The sine of half a right angle.
-const HALF_RIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
-/// How far back from its last sample a line may be cut for a corner, in its size.
-const BACK: f64 = 0.6;
-
-/// How far from a corner a line that is carried on may pass, in its size.
-const MISS: f64 = 0.4;
-
-/// Ends face each other over a gap in one line if both lead to the other within this cosine (37°).
-const FACING: f64 = 0.8;
-
-/// A gap may be this wide, in the lesser size, if either line would stand by itself and they go straight on over
-/// it within [`STRAIGHT`]: on a thread half a dozen points may fail in a row. Two short ones may be bumps in a row.
-const GAP: f64 = 4.0;
-
-/// Within this cosine (15°) the ends at a wide gap lead to each other.
-const STRAIGHT: f64 = 0.966;
 
 /// Ends that run the same way or against each other (sine of 15°) lead to no corner.
 const PARALLEL: f64 = 0.26;
-
-/// The way from an end is taken over this many of the line's places.
-const TANGENT: usize = 4;
-
-/// The ways over so many of the line's places, the last and those before, tell whether it ends as an arc...
-const ARC: usize = 3;
-
-/// ... which it does if they differ by more than this (cosine of 15°): noise turns them by less.
-const CURVED: f64 = 0.966;
-
-/// A line bends as far as the last so many of its places before its end, taken together, tell...
-const BENT: usize = 8;
-
-/// ... by more than so many times what they lie off their parabola.
-const SURE: f64 = 3.0;
 
 /// Times that lines which bend are carried on to where they meet, each from where they did before: what is left to go
 /// shrinks by the angle that they turn by on the way...
@@ -75,125 +34,12 @@ const MIDWAY: f64 = 0.5;
 /// within the reach; its own, which comes from behind, has half as many.
 const PLACES_LOOKED_AT: usize = 32;
 
-/// A line of fewer places than this does not close on itself at a corner.
-const LOOP: usize = 8;
-
 /// Three directions span space if the volume between them is more than this: they do not lie in a plane by 15°.
 const SOLID: f64 = 0.26;
 
 /// Weight of the mean of their places among the lines that meet at a corner, so that nearly parallel ones do
 /// not meet far away.
 const MEAN_WEIGHT: f64 = 1e-3;
-
-/// An end of a line.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct End {
-    line: usize,
-    last: bool,
-    pub(super) place: DVec3,
-    /// Unit vector that carries the line on.
-    pub(super) outward: DVec3,
-    /// How its line goes on, if it bends there.
-    bend: Option<Parabola>,
-    pub(super) size: f64,
-    /// How many places its line has.
-    places: usize,
-    /// Whether its line, with what that goes on with over gaps, is long enough to be kept whatever its ends do.
-    pub(super) stands: bool,
-}
-
-impl End {
-    fn of(line: usize, of: &Line, last: bool) -> Option<Self> {
-        let count = of.places.len();
-        if count < 2 {
-            return None;
-        }
-        let back = |n: usize| of.places[if last { count - 1 - n } else { n }];
-        let place = back(0);
-        Some(Self {
-            line,
-            last,
-            place,
-            outward: outward(back, count - 1)?,
-            bend: bend(back, count - 1),
-            size: of.size,
-            places: count,
-            stands: stands(of.length(), of.size),
-        })
-    }
-
-    /// The line, a place and a unit vector, on which it goes on beside a place.
-    fn toward(&self, place: DVec3) -> [DVec3; 2] {
-        let way = (place - self.place).dot(self.outward).max(0.0);
-        self.bend.map_or([self.place, self.outward], |bend| bend.ahead(way))
-    }
-
-    /// The last places of its line, the end first.
-    fn tail(&self, lines: &[Line]) -> Vec<DVec3> {
-        let places = &lines[self.line].places;
-        let from_last: &mut dyn Iterator<Item = &DVec3> =
-            if self.last { &mut places.iter().rev() } else { &mut places.iter() };
-        from_last.take(TAIL).copied().collect()
-    }
-
-    /// Whether another end is of another line, or of one long enough to close on itself.
-    pub(super) fn is_apart(&self, other: &Self) -> bool {
-        self.line != other.line || self.places >= LOOP
-    }
-
-    /// Whether this end and another are on both sides of a gap.
-    fn faces(&self, other: &Self) -> bool {
-        let way = other.place - self.place;
-        let length = way.length();
-        let lead = way.dot(self.outward).min(-way.dot(other.outward));
-        let size = self.size.min(other.size);
-        let near = |reach: f64, cosine: f64| length <= reach * size && lead >= cosine * length;
-        let wide = self.stands || other.stands;
-        self.is_apart(other) && length > 0.0 && (near(AHEAD, FACING) || (wide && near(GAP, STRAIGHT)))
-    }
-
-    /// Whether a place is where the line may go on to, at most so many sizes ahead.
-    fn reaches(&self, place: DVec3, most: f64) -> bool {
-        let way = place - self.place;
-        let ahead = way.dot(self.outward);
-        (-BACK * self.size..=most * self.size).contains(&ahead)
-            && way.reject_from_normalized(self.outward).length() <= MISS * self.size
-    }
-
-    /// How far ahead a corner with another may lie, in its size: there the two are as near to each other as at right
-    /// angles, or as [`AHEAD`] leaves them.
-    fn corner_reach(&self, other: &Self) -> f64 {
-        let half = (0.5 * (1.0 - self.outward.dot(other.outward)).max(0.0)).sqrt();
-        (AHEAD * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
-    }
-
-    /// Of some places the nearest that the line may go on to, at most so many sizes ahead.
-    fn nearest(&self, places: impl Iterator<Item = DVec3>, most: f64) -> Option<DVec3> {
-        let reached = places.filter(|&place| self.reaches(place, most));
-        reached.min_by(|a, b| a.distance(self.place).total_cmp(&b.distance(self.place)))
-    }
-}
-
-/// The parabola on which a line leads on that bends, of places so many back from its end, the last given by their number.
-fn bend(back: impl Fn(usize) -> DVec3, last: usize) -> Option<Parabola> {
-    let places: Vec<DVec3> = (0..=last.min(BENT)).rev().map(back).collect();
-    let parabola = Parabola::through(&places, places.len() - 1)?;
-    let half = 0.5 * places[0].distance(places[places.len() - 1]);
-    (0.5 * half * half * parabola.bend.length() > SURE * parabola.off).then_some(parabola)
-}
-
-/// The direction in which a line leads on, of places so many back from its end, the last given by their number.
-fn outward(back: impl Fn(usize) -> DVec3, last: usize) -> Option<DVec3> {
-    let step = ARC.min(last / 2);
-    if step > 0 {
-        let ways = [0, step].map(|n| (back(n) - back(n + step)).normalize_or_zero());
-        if ways[0].dot(ways[1]) < CURVED {
-            // They are the tangents at a quarter and three quarters of the arc.
-            return (ways[0] + 0.5 * (ways[0] - ways[1])).try_normalize();
-        }
-    }
-    (back(0) - back(TANGENT.min(last))).try_normalize()
-}
 
 /// Where ends meet, or one runs on to, and the numbers of these.
 type Meeting = (DVec3, Vec<usize>);
@@ -307,11 +153,6 @@ impl Joining<'_> {
     }
 }
 
-/// Whether a line as long as that is kept whatever its ends do.
-fn stands(length: f64, size: f64) -> bool {
-    length >= LENGTHS[2] * size
-}
-
 /// Lets a line end at a place.
 fn extend(line: &mut Line, end: &End, place: DVec3) {
     let beyond = |other: DVec3| (other - place).dot(end.outward) >= 0.0;
@@ -328,8 +169,9 @@ fn extend(line: &mut Line, end: &End, place: DVec3) {
 
 /// Where the two ends at a gap meet.
 fn gaps(ends: &[End]) -> Result<Vec<Meeting>> {
-    let pairs = mutual(ends, End::faces)?.into_iter();
-    Ok(pairs.map(|[n, other]| (between(&ends[n], &ends[other]), vec![n, other])).collect())
+    let meeting = |a: &End, b: &End| a.faces(b).then(|| between(a, b));
+    let pairs = mutual(ends, meeting)?.into_iter();
+    Ok(pairs.map(|(pair, place)| (place, pair.to_vec())).collect())
 }
 
 /// Pairs of ends at a gap over which a line goes on round a circle, each with the places on that.
@@ -342,20 +184,22 @@ fn round_gaps(
         let tails = [a, b].map(|end| end.tail(lines));
         Arc::between([a, b], [&tails[0], &tails[1]]).filter(|arc| arc.is_creased(smooth))
     };
-    let pairs = mutual(ends, |a, b| arc(a, b).is_some())?.into_iter();
-    Ok(pairs.filter_map(|[a, b]| Some(([a, b], arc(&ends[a], &ends[b])?.places().collect()))).collect())
+    Ok(mutual(ends, arc)?.into_iter().map(|(pair, arc)| (pair, arc.places().collect())).collect())
 }
 
-/// Pairs of ends at gaps: each is the nearest of all that the other faces.
-fn mutual(ends: &[End], faces: impl Fn(&End, &End) -> bool) -> Result<Vec<[usize; 2]>> {
+/// Pairs of ends at gaps, each the nearest of all that the other faces, with what leads from the first to the second.
+fn mutual<T>(ends: &[End], over: impl Fn(&End, &End) -> Option<T>) -> Result<Vec<([usize; 2], T)>> {
     let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
     let facing = |n: usize| {
         let near = search.around(ends[n].place.as_vec3(), LOOKED_AT).into_iter().map(|other| other as usize);
-        near.filter(|&other| other != n).find(|&other| faces(&ends[n], &ends[other]))
+        near.filter(|&other| other != n).find_map(|other| Some((other, over(&ends[n], &ends[other])?)))
     };
-    let facing: Vec<Option<usize>> = (0..ends.len()).map(facing).collect();
-    let pairs = facing.iter().enumerate().filter_map(|(n, &other)| Some([n, other?]));
-    Ok(pairs.filter(|&[n, other]| n < other && facing[other] == Some(n)).collect())
+    let facing: Vec<Option<(usize, T)>> = (0..ends.len()).map(facing).collect();
+    let faced: Vec<Option<usize>> =
+        facing.iter().map(|facing| facing.as_ref().map(|found| found.0)).collect();
+    let pairs = facing.into_iter().enumerate().filter_map(|(n, found)| Some((n, found?)));
+    let pairs = pairs.filter(|&(n, (other, _))| n < other && faced[other] == Some(n));
+    Ok(pairs.map(|(n, (other, over))| ([n, other], over)).collect())
 }
 
 /// The middle of the cubic that leads from one end to another as both do (Hermite's).
@@ -562,5 +406,39 @@ mod tests {
             let off = lines[0].places[0].length();
             assert!((off < 1e-3) == third, "{off}");
         }
+    }
+
+    #[test]
+    fn a_straight_line_goes_on_into_an_arc_over_a_gap() {
+        // The side of a slot and its round end of radius 6, which begins two sizes beyond the end of the side.
+        let at = |angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            6.0 * DVec3::new(sin, 1.0 - cos, 0.0)
+        };
+        let round = Line {
+            places: (0..20).map(|n| at(0.3 + 0.055 * f64::from(n))).collect(),
+            closed: false,
+            size: 1.0,
+        };
+        let mut lines = [straight(-12.0 * DVec3::X, -2.0 * DVec3::X), round];
+        assert_eq!(join(&mut lines, &|_| true).unwrap().met, [[false, true], [true, false]]);
+    }
+
+    #[test]
+    fn lines_that_bend_are_carried_on_to_their_corner_as_they_bend() {
+        // Two arcs of radius 8 that leave one place at right angles and bend toward each other, and a line out of
+        // their plane: each ends 1.7 sizes before, where its tangent passes the place by 0.2.
+        let arc = |way: DVec3, to: DVec3| {
+            let at = |n: u32| {
+                let (sin, cos) = libm::sincos((1.7 + f64::from(n) / 3.0) / 8.0);
+                8.0 * (sin * way + (1.0 - cos) * to)
+            };
+            Line { places: (0..24).map(at).collect(), closed: false, size: 1.0 }
+        };
+        let mut lines =
+            [arc(DVec3::X, DVec3::Y), arc(DVec3::Y, DVec3::X), straight(1.7 * DVec3::Z, 9.0 * DVec3::Z)];
+        assert_eq!(join(&mut lines, &|_| true).unwrap().met, [[true, false]; 3]);
+        let off = lines.iter().map(|line| line.places[0].length()).fold(0.0, f64::max);
+        assert!(off < 0.05, "{off}");
     }
 }

@@ -134,7 +134,7 @@ impl Parabola {
         // Of each coordinate: value, slope and half the bend, by span.
         let of = DMat3::from_cols_array_2d(&sides.map(|side| (inverse * side).to_array())).transpose();
         let off = |n: usize| (window[n] - window[at] - of * term(n)).length_squared();
-        let off = ((0..window.len()).map(off).sum::<f64>() / window.len() as f64).sqrt();
+        let off = ((0..window.len()).map(off).sum::<f64>() / (window.len() - 3) as f64).sqrt();
         let [place, slope, half] = [of.x_axis, of.y_axis, of.z_axis];
         Some(Self { place: window[at] + place, slope: slope / span, bend: 2.0 / (span * span) * half, off })
     }

@@ -6,7 +6,7 @@
 //! 2. `ridge`: such samples are drawn together onto one line, and thinned out along it.
 //! 3. `links`: each is linked to the next on either side; `lines` keeps the chains that are sharp
 //!    enough and smooths them.
-//! 4. `corners`: ends that lead to one place, or into another line, are carried on to it, or to each other over a
+//! 4. `corners`: `ends` that lead to one place, or into another line, are carried on to it, or to each other over a
 //!    gap, straight or on a circle (`arcs`).
 //! 5. `arms`: creases too short for samples of their own, and gaps, are looked for between the ends of lines.
 //!
@@ -18,6 +18,7 @@ mod arcs;
 mod arms;
 mod bowl;
 mod corners;
+mod ends;
 mod hinge;
 mod lines;
 mod links;
@@ -57,6 +58,9 @@ const WEAK_SHARE: f64 = 0.75;
 /// A line with loose ends is at least this many neighbourhoods long: one with none, with one, with
 /// two.
 const LENGTHS: [f64; 3] = [0.5, 3.0, 5.0];
+
+/// What lies between ends is at most this long, in sizes: longer creases have samples of their own.
+const LONGEST: f64 = 6.0;
 
 /// Lines along which the surface of a cloud is creased, model units; a closed one repeats its first
 /// place at the end.

@@ -290,3 +290,17 @@ fn clouds_of_few_points_have_none() {
     let line = (0..100).map(|n| Vec3::X * (n as f32 / 100.0)).collect();
     assert!(creases(line, 0.0).is_empty());
 }
+
+#[test]
+fn lines_that_go_on_over_gaps_are_long_as_one() {
+    // Three pieces of two sizes each in a row, the outer ends of which meet nothing.
+    let piece = |from: f64| Line {
+        places: (0..=6).map(|n| DVec3::new(from + f64::from(n) / 3.0, 0.0, 0.0)).collect(),
+        closed: false,
+        size: 1.0,
+    };
+    let lines = || vec![piece(0.0), piece(2.5), piece(5.0)];
+    let met = vec![[false, true], [true, true], [true, false]];
+    let kept = |run: [u32; 3]| worth_it(lines(), &Joined { met: met.clone(), run: run.to_vec() }, 0.0).len();
+    assert_eq!([kept([0, 0, 0]), kept([0, 1, 2])], [3, 1]);
+}
