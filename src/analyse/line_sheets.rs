@@ -1,9 +1,9 @@
 //! The sheets of a cloud that meet at feature lines.
 //!
-//! Around each segment of a line the points fall, seen along it, into clusters of direction:
+//! Around each segment of a line the points fall, seen along it, into clusters of direction (`angles`):
 //! one for each sheet of the surface that ends there.
 
-use std::f64::consts::TAU;
+mod angles;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -14,6 +14,7 @@ use super::segment_grid::SegmentGrid;
 use super::strips::{Strips, put_among};
 use super::surface::Rows;
 use crate::model::polyline::nearest_on;
+pub(super) use angles::SEPARATE;
 
 /// Points nearer than this many spacings to a line have no direction from it to speak of...
 const TOO_NEAR: f64 = 0.3;
@@ -56,26 +57,6 @@ const AT_END: f64 = 0.2;
 /// Segments that turn away from the one in question by more than this (cosine of 30°) do not
 /// vote.
 const ALIGNED: f64 = 0.866;
-
-/// Directions farther apart than this (25°) belong to different sheets.
-pub(super) const SEPARATE: f64 = 0.436;
-
-/// Votes count as of one direction within this (10°).
-const WITHIN: f64 = 0.175;
-
-/// A direction that has less than this share of the votes of one nearby is that of strays. Of two sheets 60°
-/// apart whose votes scatter by 10° the direction between has a twentieth.
-const STRAYS: f64 = 0.25;
-
-/// Directions are nearby within this (45°).
-const NEARBY: f64 = 0.785;
-
-/// Directions spread over more than this (100°) are no sheet but a blob, or a surface that
-/// the line floats above.
-const SPREAD: f64 = 1.745;
-
-/// Fewer points than this are no sheet.
-const FEWEST: usize = 3;
 
 /// A sheet that ends at a segment.
 #[derive(Clone, Debug, PartialEq)]
@@ -271,7 +252,7 @@ fn sheets(
 ) -> Vec<Sheet> {
     let along = network.along(segment);
     let (right, up) = along.any_orthonormal_pair();
-    let mut votes: Vec<(f64, u32)> = window(network, segment)
+    let mut votes: Vec<angles::Vote> = window(network, segment)
         .into_iter()
         .flat_map(|near| voters.row(near).iter().copied())
         .filter_map(|point| {
@@ -280,53 +261,10 @@ fn sheets(
         })
         .collect();
     votes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let clusters = clusters(&gathered(&votes));
-    clusters.into_iter().filter_map(|points| sheet(network, sites, beside, segment, points)).collect()
-}
-
-/// Of votes sorted by angle those whose way many point: beside them a few are strays of the noise, which would
-/// join two sheets.
-fn gathered(votes: &[(f64, u32)]) -> Vec<(f64, u32)> {
-    let crowd: Vec<usize> = (0..votes.len()).map(|n| around(votes, n, WITHIN).count()).collect();
-    let is_stray = |n: usize| {
-        let most = around(votes, n, NEARBY).map(|other| crowd[other]).max().unwrap_or_default();
-        (crowd[n] as f64) < STRAYS * most as f64
-    };
-    (0..votes.len()).filter(|&n| !is_stray(n)).map(|n| votes[n]).collect()
-}
-
-/// Those of votes sorted by angle that point within `reach` of the way of one, itself among them.
-fn around(votes: &[(f64, u32)], n: usize, reach: f64) -> impl Iterator<Item = usize> + '_ {
-    let count = votes.len();
-    let near = move |&other: &usize| {
-        let apart = (votes[other].0 - votes[n].0).abs();
-        apart.min(TAU - apart) <= reach
-    };
-    let after = (0..count).map(move |step| (n + step) % count).take_while(near);
-    let before = (1..count).map(move |step| (n + count - step) % count).take_while(near);
-    // Where all are near, the walks both ways meet.
-    after.chain(before).take(count)
-}
-
-/// Splits points sorted by angle where two neighbours lie far apart.
-fn clusters(votes: &[(f64, u32)]) -> Vec<Vec<u32>> {
-    let count = votes.len();
-    let gap = |n: usize| {
-        let step = votes[(n + 1) % count].0 - votes[n].0;
-        if n + 1 == count { step + TAU } else { step }
-    };
-    let breaks: Vec<usize> = (0..count).filter(|&n| gap(n) > SEPARATE).collect();
-    let mut found = Vec::new();
-    for (k, &end) in breaks.iter().enumerate() {
-        // From behind the break before this one, round the circle, to this one.
-        let start = breaks[(k + breaks.len() - 1) % breaks.len()] + 1;
-        let length = (end + count - start) % count + 1;
-        let spread: f64 = (0..length - 1).map(|n| gap((start + n) % count)).sum();
-        if length >= FEWEST && spread <= SPREAD {
-            found.push((0..length).map(|n| votes[(start + n) % count].1).collect());
-        }
-    }
-    found
+    angles::sheets(&votes)
+        .into_iter()
+        .filter_map(|points| sheet(network, sites, beside, segment, points))
+        .collect()
 }
 
 /// Sorts points by how near they are to the middle of a segment.
