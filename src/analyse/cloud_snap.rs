@@ -9,11 +9,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cloud_creases::{Points, meeting, traces};
+use super::cloud_creases::{Piece, Points, meeting, traces};
 use super::given_lines::SHARP_DEGREES;
 use super::line_network::Network;
 use super::line_ways::{self, Way, ways};
-use super::segment_grid::{Nearest, SegmentGrid};
+use super::segment_grid::Nearest;
 use super::surface::Rows;
 use crate::error::Result;
 use crate::model::polyline::nearest_on;
@@ -42,8 +42,11 @@ const SEEN_SHARE: f64 = 0.25;
 const NOISIEST: f64 = 0.1;
 
 /// Lines that lie off their creases by no more than so many spacings on the median stay as they are: the two of a
-/// narrow crest, made one, lie 0.3 off where its sides would meet.
+/// narrow crest, made one, lie 0.3 off where its sides would meet...
 const BESIDE: f64 = 0.4;
+
+/// ... but for creases that leave nothing to explain, of which this is as much as is not known.
+const BESIDE_EXACT: f64 = 0.1;
 
 /// But such as stray by more than so many from the mean of those around do not lie on it: exact lines appear to by 0.05.
 const TREMBLES: f64 = 0.15;
@@ -89,15 +92,14 @@ pub fn onto_creases(mut network: Network, points: &Points<'_>) -> Result<(Networ
 }
 
 /// Pieces of the creases that points around a network show.
-fn creases_beside(network: &Network, points: &Points<'_>) -> Result<Vec<[DVec3; 2]>> {
+fn creases_beside(network: &Network, points: &Points<'_>) -> Result<Vec<Piece>> {
     let grid = network.grid();
     let near = |&n: &u32| {
         let reach = (REACH + SEEN) * f64::from(points.laid.spacing[n as usize]);
         grid.nearest(points.laid.positions[n as usize].as_dvec3(), reach).is_some()
     };
     let seeds: Vec<u32> = (0..points.laid.positions.len() as u32).into_par_iter().filter(near).collect();
-    let lines = traces(points, &seeds, SHARP_DEGREES)?;
-    Ok(lines.iter().flat_map(|line| line.windows(2).map(|side| [side[0], side[1]])).collect())
+    traces(points, &seeds, SHARP_DEGREES)
 }
 
 /// What a crease tells of a node: by how much it lies off it, and the crease's direction.
@@ -105,6 +107,8 @@ fn creases_beside(network: &Network, points: &Points<'_>) -> Result<Vec<[DVec3; 
 struct Vote {
     offset: DVec3,
     along: DVec3,
+    /// Whether that is known exactly.
+    exact: bool,
 }
 
 /// Lines, and the places on creases that they mean.
@@ -112,22 +116,22 @@ struct Snap<'a> {
     network: &'a Network,
     points: &'a Points<'a>,
     /// Pieces of them.
-    creases: SegmentGrid,
+    creases: &'a [Piece],
     /// For each segment, the pieces that it is the nearest to.
     of_segment: Rows,
 }
 
 impl<'a> Snap<'a> {
-    fn new(network: &'a Network, points: &'a Points<'a>, creases: &[[DVec3; 2]]) -> Self {
+    fn new(network: &'a Network, points: &'a Points<'a>, creases: &'a [Piece]) -> Self {
         let grid = network.grid();
-        let means = |&[a, b]: &[DVec3; 2]| {
+        let means = |&Piece { ends: [a, b], .. }: &Piece| {
             let (place, along) = (0.5 * (a + b), (b - a).normalize_or_zero());
             let runs_along = |segment: u32| network.along(segment).dot(along).abs() >= ALONG;
             grid.nearest_of(place, REACH * points.laid.at(place), runs_along).map(|near| near.segment)
         };
         let pairs = creases.iter().zip(0_u32..).filter_map(|(crease, n)| Some((means(crease)?, n)));
         let of_segment = Rows::from_pairs(network.segments.len(), pairs.collect());
-        Self { network, points, creases: SegmentGrid::new(creases.to_vec()), of_segment }
+        Self { network, points, creases, of_segment }
     }
 
     /// Where a node is.
@@ -179,7 +183,7 @@ impl<'a> Snap<'a> {
         let here = self.place(way.nodes[at]);
         let near = way.around(at, WINDOW).flat_map(|segment| self.of_segment.row(segment));
         let foot = |&piece: &u32| {
-            let [a, b] = self.creases.segment(piece);
+            let [a, b] = self.creases[piece as usize].ends;
             let point = nearest_on(a, b, here);
             Nearest { segment: piece, point, distance: point.distance(here) }
         };
@@ -191,24 +195,30 @@ impl<'a> Snap<'a> {
     /// What the nearest place of a crease says of another; nothing where the crease ends before it comes by.
     fn beside(&self, here: DVec3, near: Nearest) -> Option<Vote> {
         let (offset, along) = (near.point - here, self.along(near.segment));
-        (offset.dot(along).abs() <= NEXT * self.points.laid.at(here)).then_some(Vote { offset, along })
+        let exact = self.creases[near.segment as usize].exact;
+        (offset.dot(along).abs() <= NEXT * self.points.laid.at(here)).then_some(Vote { offset, along, exact })
     }
 
     /// Unit vector along a piece of a crease.
     fn along(&self, piece: u32) -> DVec3 {
-        let [a, b] = self.creases.segment(piece);
+        let [a, b] = self.creases[piece as usize].ends;
         (b - a).normalize_or(DVec3::X)
     }
 
     /// Whether a way lies farther off its crease than that is known, or now on one side of it and now on the other.
     fn is_displaced(&self, way: &Way, votes: &[Option<Vote>]) -> bool {
-        let off = |&node: &u32| Some(votes[node as usize]?.offset / self.points.laid.at(self.place(node)));
-        let off: Vec<DVec3> = way.nodes.iter().filter_map(off).collect();
+        let off = |&node: &u32| {
+            let vote = votes[node as usize]?;
+            Some((vote.offset / self.points.laid.at(self.place(node)), vote.exact))
+        };
+        let (off, exact): (Vec<DVec3>, Vec<bool>) = way.nodes.iter().filter_map(off).unzip();
         let strays = |at: usize| {
             let around = &off[at.saturating_sub(AROUND)..(at + AROUND + 1).min(off.len())];
             off[at].distance(around.iter().sum::<DVec3>() / around.len() as f64)
         };
-        median(off.iter().map(|off| off.length())) > BESIDE || median((0..off.len()).map(strays)) > TREMBLES
+        let known = exact.iter().filter(|exact| **exact).count() > off.len() / 2;
+        let beside = if known { BESIDE_EXACT } else { BESIDE };
+        median(off.iter().map(|off| off.length())) > beside || median((0..off.len()).map(strays)) > TREMBLES
     }
 }
 
@@ -311,6 +321,8 @@ mod tests {
             assert!(off < 0.67, "{name}: {off} steps off");
             assert!(moved > 1.8 && (1.8..2.2).contains(&length), "{name}: {moved}, {length}");
         }
+        let [off, moved, _] = snapped(&[beside(1, shift(0.3))], 0.0);
+        assert!(off < 0.1 && moved > 1.8, "a third of a step off: {off}, {moved}");
         let down = DVec3::new(0.0, 8.0, fall(60.0, 8.0));
         let far = snapped(&[beside(1, |_| down)], 0.0);
         assert!(far[1] == 0.0 && far[2] > 1.9, "{far:?}: a line down the face moved");

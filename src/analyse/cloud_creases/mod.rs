@@ -95,16 +95,29 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     Ok(lines.into_iter().map(Line::whole).collect())
 }
 
-/// Creases at which the surface turns by more than an angle (degrees), as far as some of the points show them, which
-/// are numbered ascending: lines however short, model units.
+/// A piece of a crease.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Model units.
+    pub ends: [DVec3; 2],
+    /// Whether the points beside the crease leave nothing to explain, as beside a narrow crest they do.
+    pub exact: bool,
+}
+
+/// Pieces of creases, however short, at which the surface turns by more than an angle (degrees), as far as some of the
+/// points show them, which are numbered ascending.
 ///
 /// # Errors
 /// As [`cloud_creases`].
-pub fn traces(points: &Points<'_>, shown_by: &[u32], degrees: f64) -> Result<Vec<Vec<DVec3>>> {
-    Ok(chains(points, shown_by.par_iter().copied(), degrees)?
-        .iter()
-        .map(|chain| Line::along(chain).whole())
-        .collect())
+pub fn traces(points: &Points<'_>, shown_by: &[u32], degrees: f64) -> Result<Vec<Piece>> {
+    let chains = chains(points, shown_by.par_iter().copied(), degrees)?;
+    Ok(chains.iter().flat_map(pieces).collect())
+}
+
+fn pieces(chain: &Chain) -> Vec<Piece> {
+    let exact = samples::are_exact(&chain.samples);
+    let places = Line::along(chain).whole();
+    places.windows(2).map(|side| Piece { ends: [side[0], side[1]], exact }).collect()
 }
 
 /// Samples of creases in the order in which they follow each other.

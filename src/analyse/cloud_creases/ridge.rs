@@ -58,7 +58,7 @@ pub(super) fn ridge(mut samples: Vec<Sample>) -> Result<Vec<Sample>> {
 fn drawn(sample: &Sample, samples: &[Sample], search: &Search, few_go: bool) -> Option<Sample> {
     let reach = REACH * sample.size;
     let (mut across, mut along, mut between) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-    let (mut turn, mut rounded, mut weights, mut count) = (0.0, 0.0, 0.0, 0);
+    let (mut turn, mut rounded, mut left, mut weights, mut count) = (0.0, 0.0, 0.0, 0.0, 0);
     for other in search.around(sample.place.as_vec3(), LOOKED_AT) {
         let other = &samples[other as usize];
         let way = other.place - sample.place;
@@ -73,6 +73,7 @@ fn drawn(sample: &Sample, samples: &[Sample], search: &Search, few_go: bool) -> 
         between += weight * other.between;
         turn += weight * other.turn;
         rounded += weight * other.rounded;
+        left += weight * other.left;
         weights += weight;
         count += 1;
     }
@@ -84,6 +85,7 @@ fn drawn(sample: &Sample, samples: &[Sample], search: &Search, few_go: bool) -> 
         between: between.normalize_or(sample.between),
         turn: turn / weights,
         rounded: rounded / weights,
+        left: left / weights,
         size: sample.size,
     })
 }

@@ -24,6 +24,8 @@ pub(super) struct Sample {
     /// As [`Hinge::rounded`], in a neighbourhood as large as noise calls for; 0 in one that is no larger than
     /// it is without, in which curved sides may count for more than the noise.
     pub(super) rounded: f64,
+    /// As [`Hinge::scatter`], beyond what the noise may be.
+    pub(super) left: f64,
     /// Radius of the whole neighbourhood looked at, though its nearest points alone may show it.
     pub(super) size: f64,
 }
@@ -202,8 +204,8 @@ impl Points<'_> {
         // A neighbourhood no larger than without noise has none of its points to spare.
         let many = points.len() > FEWEST as usize;
         let shown = |points: &[DVec3]| shown(points, noise, many, turn);
-        let exact = |hinge: &Hinge| hinge.scatter <= UNEXPLAINED * UNEXPLAINED + LOOSE_NOISE * noise * noise;
-        let close = || shown(points.get(..CLOSE).filter(|_| !many)?).filter(exact);
+        let left = |hinge: &Hinge| hinge.scatter - LOOSE_NOISE * noise * noise;
+        let close = || shown(points.get(..CLOSE).filter(|_| !many)?).filter(|hinge| is_nothing(left(hinge)));
         let hinge = shown(&points).or_else(close)?;
         Some(Sample {
             place: here + spacing * hinge.foot,
@@ -211,9 +213,21 @@ impl Points<'_> {
             between: (hinge.inward[0] + hinge.inward[1]).normalize_or(hinge.normal()),
             turn: hinge.turn(),
             rounded: if many { hinge.rounded(&points, radius, cutoff(noise)) } else { 0.0 },
+            left: left(&hinge),
             size: radius * spacing,
         })
     }
+}
+
+/// Whether the points beside some samples, on the mean, leave nothing to explain.
+pub(super) fn are_exact(samples: &[Sample]) -> bool {
+    let left = samples.iter().map(|sample| sample.left.max(0.0)).sum::<f64>();
+    is_nothing(left / samples.len() as f64)
+}
+
+/// Whether a mean square, of spacings, is none to speak of.
+fn is_nothing(left: f64) -> bool {
+    left <= UNEXPLAINED * UNEXPLAINED
 }
 
 /// The hinge that points show.
