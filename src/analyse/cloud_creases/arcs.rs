@@ -9,7 +9,8 @@ use super::ends::End;
 use super::plane::Moments;
 use super::ridge::APART;
 
-/// The last places before either end lie on the circle within this share of the size: those of two straight lines are off by more.
+/// The last places before either end lie on the circle within this share of the size: those of two straight lines are
+/// off by more.
 const ON: f64 = 0.1;
 
 /// A gap spans at most half a turn, and no more than what is seen of the circle before both ends does.

@@ -410,7 +410,7 @@ mod tests {
 
     #[test]
     fn a_straight_line_goes_on_into_an_arc_over_a_gap() {
-        // The side of a slot and its round end of radius 6, which begins two sizes beyond the end of the side.
+        // The side of a slot and its round end of radius 6, each some two sizes short of where they meet.
         let at = |angle: f64| {
             let (sin, cos) = libm::sincos(angle);
             6.0 * DVec3::new(sin, 1.0 - cos, 0.0)

@@ -31,10 +31,10 @@ const GAP: f64 = 4.0;
 /// Within this cosine (15°) the ends at a wide gap lead to each other.
 const STRAIGHT: f64 = 0.966;
 
-/// The way from an end is taken over this many of the line's places.
+/// The way from an end of a line that does not bend is taken over this many of its places.
 const TANGENT: usize = 4;
 
-/// Its last so many places tell how a line goes on...
+/// The last so many places of a line tell how it goes on...
 pub(super) const TAIL: usize = 9;
 
 /// ... which bends if they, taken together, tell so by more than so many times what they lie off their parabola.
