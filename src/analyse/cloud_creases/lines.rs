@@ -101,7 +101,7 @@ pub(super) struct Parabola {
     /// First and second derivative there.
     pub(super) slope: DVec3,
     pub(super) bend: DVec3,
-    /// How far the places it goes through lie off it, root mean square.
+    /// How far places lie off it, as a standard deviation: those it goes through do by less the fewer they are.
     pub(super) off: f64,
 }
 
@@ -134,7 +134,9 @@ impl Parabola {
         // Of each coordinate: value, slope and half the bend, by span.
         let of = DMat3::from_cols_array_2d(&sides.map(|side| (inverse * side).to_array())).transpose();
         let off = |n: usize| (window[n] - window[at] - of * term(n)).length_squared();
-        let off = ((0..window.len()).map(off).sum::<f64>() / (window.len() - 3) as f64).sqrt();
+        // Of a coordinate it has three terms, which take as many of the places' freedoms.
+        let free = window.len() - 3;
+        let off = ((0..window.len()).map(off).sum::<f64>() / free as f64).sqrt();
         let [place, slope, half] = [of.x_axis, of.y_axis, of.z_axis];
         Some(Self { place: window[at] + place, slope: slope / span, bend: 2.0 / (span * span) * half, off })
     }

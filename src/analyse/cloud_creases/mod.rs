@@ -100,7 +100,8 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
 pub struct Piece {
     /// Model units.
     pub ends: [DVec3; 2],
-    /// Whether the points beside the crease leave nothing to explain, as beside a narrow crest they do.
+    /// Whether the two half planes leave nothing of the points beside the crease to explain. Beside a crest narrower
+    /// than the points lie apart they leave some: where its sides would meet is not where it is.
     pub exact: bool,
 }
 

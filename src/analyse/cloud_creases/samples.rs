@@ -24,7 +24,7 @@ pub(super) struct Sample {
     /// As [`Hinge::rounded`], in a neighbourhood as large as noise calls for; 0 in one that is no larger than
     /// it is without, in which curved sides may count for more than the noise.
     pub(super) rounded: f64,
-    /// As [`Hinge::scatter`], beyond what the noise may be.
+    /// As [`Hinge::scatter`], beyond what the noise may be: squares of the spacing.
     pub(super) left: f64,
     /// Radius of the whole neighbourhood looked at, though its nearest points alone may show it.
     pub(super) size: f64,
