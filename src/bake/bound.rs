@@ -7,10 +7,16 @@ use super::quiet::is_noisy;
 use crate::error::{Error, Result};
 use crate::fit::clip::Clips;
 use crate::ingest::Input;
+use crate::model::outlook::outlooks;
 use crate::tolerance::COARSEST_CLOSED;
 
 /// Bounds below this share of the diagonal drown in the rounding of 32-bit positions.
 const LEAST_ERROR_SHARE: f64 = 1e-6;
+
+/// Pixels that the bound spans at most in a view along a slender mesh, which magnifies it. What stands out by two is
+/// mended, but for a few pixels; where all of an outline stands out by five, mending leaves more of it and takes more
+/// bytes than the narrower bound does. A pixel and a half would make parts four times as long as wide 16 % larger.
+const MOST_PIXELS: f64 = 2.0;
 
 /// The error bound of a bake in model units: that of the options to 32 bits, or less where
 /// [`Holes::Close`] asks for it.
@@ -49,9 +55,25 @@ pub fn model_error(options: &Options, input: &Input) -> Result<f64> {
             LEAST_ERROR_SHARE
         )));
     }
-    let closed = COARSEST_CLOSED * diagonal;
+    let closed = closed(input, diagonal);
     let narrowed = options.holes == Holes::Close && error > closed && !is_rough(input, closed);
     Ok(no_looser(if narrowed { closed } else { error }))
+}
+
+/// The coarsest bound, model units, at which pictures of an input need show neither hole nor excess.
+///
+/// A cloud's is that of a model as wide as it is long: views that magnify a slender one show more of the gaps between
+/// its points than the bound does.
+fn closed(input: &Input, diagonal: f64) -> f64 {
+    let widest = COARSEST_CLOSED * diagonal;
+    match input {
+        Input::Cloud(_) => widest,
+        Input::Mesh(mesh) => {
+            let pixels = outlooks(&mesh.vertices.positions).into_iter().map(|outlook| outlook.pixel());
+            let magnified = MOST_PIXELS * pixels.fold(f64::INFINITY, f64::min);
+            widest.min(magnified).max(LEAST_ERROR_SHARE * diagonal)
+        }
+    }
 }
 
 /// Whether a cloud scatters too much for a bound (model units) to be worth keeping unasked, or shows no surface.
@@ -76,12 +98,41 @@ mod tests {
     use crate::analyse::planted::random;
     use crate::bake::scattered::sphere;
     use crate::model::cloud::Cloud;
+    use crate::model::mesh::Mesh;
+    use glam::Vec3;
 
     /// The bound of a cloud that 1 % is asked for, as a share of its diagonal.
     fn kept(cloud: Cloud, holes: Holes) -> f64 {
         let diagonal = diagonal(&cloud.positions);
         let options = Options { max_error: MaxError::Relative(0.01), holes, ..Options::default() };
         model_error(&options, &Input::Cloud(cloud)).unwrap() / diagonal
+    }
+
+    /// A bar of some length, one wide, that 0.1 % is asked for: the bound kept, as a share of its diagonal.
+    fn kept_of_bar(length: f32, holes: Holes) -> f64 {
+        let corner = |n: u8| {
+            let side = |bit: u8, size: f32| if n >> bit & 1 == 0 { 0.0 } else { size };
+            Vec3::new(side(0, 1.0), side(1, length), side(2, 1.0))
+        };
+        let vertices = Cloud { positions: (0..8).map(corner).collect(), ..Cloud::default() };
+        let diagonal = diagonal(&vertices.positions);
+        let bar = Mesh { vertices, triangles: vec![[0, 1, 2], [1, 2, 3]], dropped: 0 };
+        let options = Options { max_error: MaxError::Relative(1e-3), holes, ..Options::default() };
+        model_error(&options, &Input::Mesh(bar)).unwrap() / diagonal
+    }
+
+    #[test]
+    fn the_bound_of_a_slender_mesh_is_narrowed_to_what_views_along_it_show() {
+        let near = |found: f64, to: f64| (found / to - 1.0).abs() < 1e-3;
+        assert!(near(kept_of_bar(3.0, Holes::Close), 1e-3), "1.6 pixels");
+        // Seen from its end, its width fills 0.95 of 512 pixels.
+        let two_pixels = 2.0 / (0.95 * 512.0);
+        for length in [10.0, 100.0_f32] {
+            let diagonal = f64::from(length).hypot(2.0_f64.sqrt());
+            assert!(near(kept_of_bar(length, Holes::Close), two_pixels / diagonal), "{length}");
+        }
+        assert!(near(kept_of_bar(1e6, Holes::Close), LEAST_ERROR_SHARE), "no finer than positions are kept");
+        assert!(near(kept_of_bar(100.0, Holes::Leave), 1e-3));
     }
 
     #[test]

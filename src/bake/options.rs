@@ -123,7 +123,7 @@ pub enum Holes {
     /// Holes that pictures 512 pixels wide from the 26 directions of the cube show of a mesh, or of the surface
     /// that a cloud tells of, and what they show beside the outline, are mended as far as splats within the
     /// bound can do without. A bound wider than a pixel of these is narrowed, that of a cloud too unless its
-    /// noise is above a sixth of that. For clouds whose points lie much closer than the pixels or some
+    /// noise is above a sixth of that, and of a slender mesh one wider than two pixels of the views along it. For clouds whose points lie much closer than the pixels or some
     /// pixels apart, and where partners cut, it is narrowed alone.
     #[default]
     Close,

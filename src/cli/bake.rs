@@ -161,7 +161,8 @@ enum ClipsArgument {
 enum HolesArgument {
     /// What pictures 512 pixels wide from 26 directions show is mended as far as splats within the bound
     /// can do without; a bound wider than a pixel of theirs, 0.125% of the diagonal, is narrowed to that
-    /// (not that of a cloud whose noise is above a sixth of it)
+    /// (not that of a cloud whose noise is above a sixth of it), that of a slender mesh to two pixels of the
+    /// views along it
     #[default]
     Close,
     /// They stay: the bound alone rules, and coarse ones make smaller files

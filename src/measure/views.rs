@@ -1,18 +1,13 @@
 //! From where holes and pictures are measured: the 26 directions of the cube.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
+use crate::model::frame::Frame;
+pub use crate::model::outlook::SIDE;
+use crate::model::outlook::{Outlook, outlooks};
 use crate::render::Camera;
 use crate::render::camera::Projection;
 use crate::render::input::Model;
-
-/// Width and height of every view, pixels.
-pub const SIDE: u32 = 512;
-
-/// Share of the picture's side that the model's greater extent fills: what is left shows what
-/// sticks out.
-const FILLED: f64 = 0.95;
 
 /// Distance of the eye from the middle of the box, in diagonals: far outside the model.
 const DISTANCE: f64 = 2.0;
@@ -35,48 +30,25 @@ pub struct View {
 /// greater extent of that takes. Up is `+Y`; seen from `+Y` it is `-Z`, from `-Y` it is `+Z`.
 #[must_use]
 pub fn views(model: Model<'_>) -> Vec<View> {
-    let steps = [1.0, 0.0, -1.0];
-    let mut all: Vec<DVec3> = Vec::with_capacity(27);
-    for x in steps {
-        for y in steps {
-            all.extend(steps.map(|z| DVec3::new(x, y, z)));
-        }
-    }
-    // Faces, edges, corners: by how many coordinates are not 0. The sort keeps the order within.
-    all.retain(|corner| *corner != DVec3::ZERO);
-    all.sort_by_key(|corner| corner.abs().element_sum() as u32);
     let diagonal = model.diagonal();
-    all.into_par_iter().map(|corner| view(corner, model, diagonal)).collect()
-}
-
-/// The view from one corner of `{-1, 0, 1}³`.
-fn view(corner: DVec3, model: Model<'_>, diagonal: f64) -> View {
-    let direction = corner.normalize();
-    let up = if corner.x == 0.0 && corner.z == 0.0 { -corner.y * DVec3::Z } else { DVec3::Y };
-    let right = up.cross(direction).normalize();
-    let upward = direction.cross(right);
     // A single point has no extent; any height shows it.
     let size = if diagonal > 0.0 { diagonal } else { 1.0 };
-    let [across, along] = [right, upward].map(|axis| span(model, axis));
-    let extent = (across[1] - across[0]).max(along[1] - along[0]);
-    let height = if extent > 0.0 { extent / FILLED } else { size };
-    let middle = 0.5 * ((across[0] + across[1]) * right + (along[0] + along[1]) * upward);
-    let frame = &model.cloud().frame;
+    let outlooks = outlooks(&model.cloud().positions);
+    outlooks.iter().map(|outlook| view(outlook, &model.cloud().frame, size)).collect()
+}
+
+/// The view of a model of some size from one side.
+fn view(outlook: &Outlook, frame: &Frame, size: f64) -> View {
+    let height = if outlook.extent() > 0.0 { outlook.height() } else { size };
+    let middle = outlook.middle();
     let camera = Camera {
-        eye: frame.to_input(middle + DISTANCE * size * direction).into(),
+        eye: frame.to_input(middle + DISTANCE * size * outlook.direction()).into(),
         target: frame.to_input(middle).into(),
-        up: up.into(),
+        up: outlook.up.into(),
         projection: Projection::Orthographic { height: height * frame.scale() },
         near: None,
     };
-    View { name: name(corner), camera, height }
-}
-
-/// Least and greatest place of the points along an axis.
-fn span(model: Model<'_>, axis: DVec3) -> [f64; 2] {
-    let places = model.cloud().positions.iter().map(|point| point.as_dvec3().dot(axis));
-    let span = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
-    if span[0] <= span[1] { span } else { [0.0; 2] }
+    View { name: name(outlook.corner), camera, height }
 }
 
 fn name(corner: DVec3) -> String {
@@ -97,7 +69,7 @@ fn name(corner: DVec3) -> String {
 mod tests {
     use super::*;
     use crate::model::cloud::Cloud;
-    use crate::model::frame::Frame;
+    use crate::model::outlook::FILLED;
     use crate::render::input::{Style, visibility};
     use glam::Vec3;
     use std::collections::BTreeSet;

@@ -7,6 +7,7 @@ pub mod discs;
 pub mod frame;
 pub mod intersect;
 pub mod mesh;
+pub mod outlook;
 pub mod partner;
 pub mod polyline;
 pub mod sight;
