@@ -10,6 +10,11 @@ use super::sets::Sets;
 /// noise zigzags.
 const RAGGED: f64 = 0.34;
 
+/// A chain that bends so often, by far the most of it (share) to one side, goes round: random bends add up to less than
+/// half of this.
+const ROUND: usize = 6;
+const ONE_WAY: f64 = 0.8;
+
 /// A chain of fewer edges than this that ends inside the surface, or closes on itself
 /// without meeting another, says nothing. One that runs from border to border, as the ridge of two
 /// triangles does, parts the surface however few its edges are.
@@ -104,12 +109,20 @@ pub fn drop_short(positions: &[Vec3], edges: &Edges, least: f64, marked: &mut [b
     }
 }
 
-/// Whether the bend changes much at more than half of the vertices.
+/// Whether the bend changes much at more than half of the vertices, and not only between more and less of one that
+/// goes on, as round a circle of long and short edges in turn.
 fn is_ragged(positions: &[Vec3], chain: &Chain) -> bool {
     let sides: Vec<DVec3> = chain.sides(positions).into_iter().map(DVec3::normalize_or_zero).collect();
     let bends: Vec<DVec3> = sides.windows(2).map(|pair| pair[0].cross(pair[1])).collect();
     let ragged = bends.windows(2).filter(|pair| pair[0].distance(pair[1]) > RAGGED).count();
-    2 * ragged > bends.len().saturating_sub(1)
+    2 * ragged > bends.len().saturating_sub(1) && !goes_round(&bends)
+}
+
+/// Whether bends are enough, and nearly all to one side.
+fn goes_round(bends: &[DVec3]) -> bool {
+    let (sum, all) =
+        bends.iter().fold((DVec3::ZERO, 0.0), |(sum, all), bend| (sum + *bend, all + bend.length()));
+    bends.len() >= ROUND && sum.length() > ONE_WAY * all
 }
 
 /// All chains of marked edges, each once, in the order of their first edge.
@@ -252,6 +265,8 @@ mod tests {
         assert_eq!(kept(&arc), 8, "half a coarse circle");
         assert_eq!(kept(&[0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 6.0, 9.0, 12.0]), 8, "one corner");
         assert_eq!(kept(&[0.0, 1.0, 0.2, 0.9, -0.3, 0.8, 0.1, 1.0, 0.0]), 0, "a zigzag");
+        let split = [0.0, 3.0, 6.0, 7.0, 8.0, 8.2, 8.4, 7.9, 7.4, 5.9, 4.4, -0.6, -5.6];
+        assert_eq!(kept(&split), 12, "half a dodecagon, its sides split");
         assert_eq!(kept(&[0.0; 4]), 0, "three edges that lead nowhere");
     }
 }
