@@ -89,7 +89,7 @@ impl Arc {
     /// How far a place lies off its circle.
     fn off(&self, place: DVec3) -> f64 {
         let (way, height) = (place - self.center, self.normal().dot(place - self.center));
-        ((way - height * self.normal()).length() - self.radius).hypot(height)
+        DVec2::new((way - height * self.normal()).length() - self.radius, height).length()
     }
 
     /// Whether it lies where the surface is not smooth.
