@@ -143,17 +143,27 @@ fn every_room_imports_only_from_above() {
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
 }
 
+/// Where items that are compiled for tests only begin in a text, each with its first line.
+fn test_items(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.match_indices("#[cfg(test)]").map(|(at, mark)| {
+        // Other attributes may stand between.
+        let mut lines = text[at + mark.len()..].lines().map(str::trim);
+        (at, lines.find(|line| !line.is_empty() && !line.starts_with("#[")).unwrap_or(""))
+    })
+}
+
+/// The text up to the module of tests in it; files of tests may be declared anywhere before.
+fn shipped(text: &str) -> &str {
+    let module = test_items(text).find(|(_, item)| item.contains("mod ") && item.ends_with('{'));
+    module.map_or(text, |(at, _)| &text[..at])
+}
+
 /// Files that are compiled for tests only: `#[cfg(test)] mod name;`.
 fn test_files(sources: &[(PathBuf, String, String)]) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     for (path, _, text) in sources {
-        for (at, mark) in text.match_indices("#[cfg(test)]") {
-            // Other attributes may stand between.
-            let mut lines = text[at + mark.len()..].lines().map(str::trim_start);
-            let rest = lines.find(|line| !line.is_empty() && !line.starts_with("#[")).unwrap_or("");
-            let module = rest.strip_prefix("mod ").map(name);
-            found.extend(module.map(|module| path.with_file_name(format!("{module}.rs"))));
-        }
+        let modules = test_items(text).filter_map(|(_, item)| item.strip_prefix("mod ").map(name));
+        found.extend(modules.map(|module| path.with_file_name(format!("{module}.rs"))));
     }
     found
 }
@@ -164,8 +174,7 @@ fn shipped_with(words: &[&str], is_asked: impl Fn(&str) -> bool) -> Vec<String> 
     let tests = test_files(&sources);
     let mut found = Vec::new();
     for (path, _, text) in sources.iter().filter(|(path, room, _)| is_asked(room) && !tests.contains(path)) {
-        let shipped = text.split("#[cfg(test)]").next().unwrap_or("");
-        let here = words.iter().filter(|word| shipped.contains(**word));
+        let here = words.iter().filter(|word| shipped(text).contains(**word));
         found.extend(here.map(|word| format!("{}: {word}", path.display())));
     }
     found
@@ -217,6 +226,13 @@ fn every_directory_is_a_room() {
     let unknown: Vec<&String> = rooms.iter().filter(|room| height(room).is_none()).collect();
     assert!(unknown.is_empty(), "not in the house: {unknown:?}");
     assert!(rooms.len() > 10, "the walk found only {rooms:?}");
+}
+
+#[test]
+fn what_follows_the_declaration_of_a_file_of_tests_is_shipped() {
+    let text =
+        "#[cfg(test)]\nmod tests;\nfn a() {}\n#[cfg(test)]\n#[allow(x)]\npub(super) mod inner {\nfn b() {}";
+    assert!(shipped(text).contains("fn a()") && !shipped(text).contains("fn b()"));
 }
 
 #[test]
