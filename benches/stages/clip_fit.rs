@@ -5,7 +5,7 @@ use criterion::Criterion;
 use glam::DVec2;
 use qsplat::Result;
 use qsplat::analyse::canonical::mix;
-use qsplat::fit::clip::{Care, ClipTolerance, Clips, fit};
+use qsplat::fit::clip::{ClipTolerance, Clips, fit};
 use qsplat::model::clip_curve::ClipCurve;
 use qsplat::sample::budget::Budget;
 use rayon::prelude::*;
@@ -38,7 +38,7 @@ pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
 }
 
 fn curves(lines: &[Vec<DVec2>], tolerance: &ClipTolerance) -> Vec<Option<Vec<ClipCurve>>> {
-    lines.par_iter().map(|line| fit(line, false, RADII, tolerance, Care::Nearest)).collect()
+    lines.par_iter().map(|line| fit(line, false, RADII, tolerance)).collect()
 }
 
 /// A seeded piece of a cosine, from outside the domain through it and out again.

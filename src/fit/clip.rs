@@ -72,15 +72,6 @@ pub enum Clips {
     Partners,
 }
 
-/// How much to do for a clip curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Care {
-    /// Enough to know that there is one within the tolerance.
-    Feasible,
-    /// The nearest one.
-    Nearest,
-}
-
 /// Control points farther out than this many radii are refused: the file's grid ends there.
 const FARTHEST_CONTROL: f64 = 16.0;
 
@@ -89,17 +80,11 @@ const STRAIGHT_CORNER_SINE: f64 = 0.0;
 
 /// Fits clip curves to one outline, in the splat's `(u, v)`; `None` where they cannot follow it.
 #[must_use]
-pub fn fit(
-    line: &[DVec2],
-    closed: bool,
-    radii: DVec2,
-    tolerance: &ClipTolerance,
-    care: Care,
-) -> Option<Vec<ClipCurve>> {
+pub fn fit(line: &[DVec2], closed: bool, radii: DVec2, tolerance: &ClipTolerance) -> Option<Vec<ClipCurve>> {
     let moved = outward(line, closed, tolerance.outset, |miter| tolerance.beside_corner(miter));
     let mut clips = Vec::new();
     for run in runs(&moved, closed, radii)? {
-        clips.extend(cut_run(&run, radii, tolerance, care)?);
+        clips.extend(cut_run(&run, radii, tolerance)?);
     }
     Some(clips)
 }
@@ -109,12 +94,12 @@ pub fn fit(
 #[must_use]
 pub fn along([a, b]: [DVec2; 2], radii: DVec2, tolerance: &ClipTolerance) -> Option<Vec<ClipCurve>> {
     let beyond = 2.0 * radii.max_element() * (b - a).normalize_or_zero();
-    fit(&[a - beyond, b + beyond], false, radii, tolerance, Care::Nearest)
+    fit(&[a - beyond, b + beyond], false, radii, tolerance)
 }
 
-fn cut_run(run: &Run, radii: DVec2, tolerance: &ClipTolerance, care: Care) -> Option<Vec<ClipCurve>> {
+fn cut_run(run: &Run, radii: DVec2, tolerance: &ClipTolerance) -> Option<Vec<ClipCurve>> {
     if !run.closed
-        && let Some(clip) = one_curve(&run.points, radii, tolerance, care)
+        && let Some(clip) = one_curve(&run.points, radii, tolerance)
     {
         return Some(vec![clip]);
     }
@@ -123,12 +108,12 @@ fn cut_run(run: &Run, radii: DVec2, tolerance: &ClipTolerance, care: Care) -> Op
         Clips::Straight => STRAIGHT_CORNER_SINE,
     };
     let arcs = split_at_convex_corners(run, sine)?;
-    arcs.iter().map(|arc| one_curve(&extend(arc, radii)?, radii, tolerance, care)).collect()
+    arcs.iter().map(|arc| one_curve(&extend(arc, radii)?, radii, tolerance)).collect()
 }
 
 /// The cheapest single curve from the first to the last point, which lie on the border:
 /// the chord, a corner of straight arms, a conic.
-fn one_curve(line: &[DVec2], radii: DVec2, tolerance: &ClipTolerance, care: Care) -> Option<ClipCurve> {
+fn one_curve(line: &[DVec2], radii: DVec2, tolerance: &ClipTolerance) -> Option<ClipCurve> {
     let (&p1, &p3) = (line.first()?, line.last()?);
     let (alpha1, alpha3) = (angle(p1), angle(p3));
     let chord = p1.distance(p3);
@@ -153,11 +138,7 @@ fn one_curve(line: &[DVec2], radii: DVec2, tolerance: &ClipTolerance, care: Care
         conic.p2.abs().max_element() <= FARTHEST_CONTROL * radii.max_element()
             && passes(conic, line, tolerance.miss)
     };
-    let quick = conic::through_tangents(line).filter(near);
-    let conic = match (care, quick) {
-        (Care::Feasible, Some(quick)) => quick,
-        _ => conic::fit(line).filter(near).or(quick)?,
-    };
+    let conic = conic::fit(line, tolerance.miss, near)?;
     Some(ClipCurve { alpha1, alpha3, p2: conic.p2, rho: conic.rho })
 }
 
@@ -349,7 +330,7 @@ mod tests {
     }
 
     fn check_within(line: &[DVec2], closed: bool, radii: DVec2, tolerance: &ClipTolerance) -> Option<usize> {
-        let clips = fit(line, closed, radii, tolerance, Care::Nearest)?;
+        let clips = fit(line, closed, radii, tolerance)?;
         if tolerance.clips == Clips::Straight {
             assert!(clips.iter().all(ClipCurve::is_straight), "{clips:?}");
         }
@@ -386,7 +367,7 @@ mod tests {
         let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
         let kite = [DVec2::ZERO, DVec2::new(cos, -sin), DVec2::new(cos + sin, 0.0), DVec2::new(cos, sin)];
         let radii = DVec2::splat(2.0);
-        let clips = fit(&kite, true, radii, &TOLERANCE, Care::Nearest).unwrap_or_default();
+        let clips = fit(&kite, true, radii, &TOLERANCE).unwrap_or_default();
         let cuts = |p: DVec2| clips.iter().any(|clip| clip.cuts(p, radii));
         assert!(follows(&kite, true, radii, cuts, &TOLERANCE), "{degrees}°");
         let step = 0.01 * TOLERANCE.outset;

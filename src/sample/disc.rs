@@ -10,7 +10,7 @@ use glam::DVec2;
 use super::grow::{Grower, MOST_CLIPS};
 use super::outline::{Outline, border_sides, holds_an_end, outlines};
 use super::region::{Member, Region};
-use crate::fit::clip::{self, Care};
+use crate::fit::clip;
 use crate::fit::ellipse::crossings;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
@@ -57,7 +57,7 @@ impl Lines<'_> {
         }
         let mut clips = Vec::new();
         for Outline { points, closed, .. } in outlines(surface, self.region, &self.pose, self.grower.open) {
-            clips.extend(clip::fit(&points, closed, self.radii, tolerance, Care::Nearest)?);
+            clips.extend(clip::fit(&points, closed, self.radii, tolerance)?);
         }
         let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(self.radii)).collect();
         let few = (1..=MOST_CLIPS).contains(&clips.len());

@@ -15,7 +15,7 @@ use super::region::{Member, Region};
 use super::settle::{Candidate, settle};
 use super::starts::Starts;
 use crate::analyse::surface::Surface;
-use crate::fit::clip::{self, Care, ClipTolerance, Clips};
+use crate::fit::clip::{self, ClipTolerance, Clips};
 use crate::fit::ellipse::{crossings, holds};
 use crate::fit::limits::{self, Limited};
 use crate::fit::pose::{Axes, Fitting, Pose, Principal, Shapes, above, miss, principal};
@@ -322,7 +322,7 @@ impl Grower<'_> {
         if !self.keeps(&fitted.pose, outer, fitted.curvature, self.budget.line, 1.0, region) {
             return Err(Stop::Fit);
         }
-        let clips = self.clips(&fitted.pose, outer, fitted.curvature, Care::Feasible, region)?;
+        let clips = self.clips(&fitted.pose, outer, fitted.curvature, Look::Coarse, region)?;
         if !Backing::of(self, &fitted.pose, outer, fitted.curvature, region, Look::Coarse).holds(&clips) {
             return Err(Stop::Bare);
         }
@@ -446,7 +446,7 @@ impl Grower<'_> {
         pose: &Pose,
         outer: DVec2,
         curvature: DVec2,
-        care: Care,
+        look: Look,
         region: &Region,
     ) -> Result<Vec<ClipCurve>, Stop> {
         if holds_an_end(self.surface, region, pose, outer, self.budget.clip.outset) {
@@ -455,16 +455,12 @@ impl Grower<'_> {
         let outlines = outlines(self.surface, region, pose, self.open);
         let mut clips = Vec::new();
         for Outline { points, closed, .. } in &outlines {
-            clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, care).ok_or(Stop::Clip)?);
+            clips.extend(clip::fit(points, *closed, outer, &self.budget.clip).ok_or(Stop::Clip)?);
             if clips.len() > MOST_CLIPS {
                 return Err(Stop::Clip);
             }
         }
         let tolerance = &self.budget.clip;
-        let look = match care {
-            Care::Feasible => Look::Coarse,
-            Care::Nearest => Look::Fine,
-        };
         let cut = Cut { clips: &clips, radii: outer, curvature };
         if cut.follows(&outlines, tolerance, look) { Ok(clips) } else { Err(Stop::Stray) }
     }
@@ -477,7 +473,7 @@ impl Grower<'_> {
             for Outline { points, closed, .. } in
                 outlines(self.surface, region, pose, self.open).iter().filter(|outline| outline.ends)
             {
-                clips.extend(clip::fit(points, *closed, outer, &self.budget.clip, Care::Nearest)?);
+                clips.extend(clip::fit(points, *closed, outer, &self.budget.clip)?);
             }
         }
         Some(clips)

@@ -14,7 +14,7 @@ use super::outline::border_sides;
 use super::region::{Member, Region};
 use super::settle::{Candidate, rounded};
 use super::shaped::Shaped;
-use crate::fit::clip::{self, Care};
+use crate::fit::clip::{self, ClipTolerance, Clips};
 use crate::fit::ellipse::{circumellipse, holds};
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
@@ -143,7 +143,8 @@ impl<'a> Triangle<'a> {
 
     /// Chords along all of its sides.
     fn all(&self) -> Option<Vec<ClipCurve>> {
-        clip::fit(&self.outline(), true, self.radii, &self.grower.budget.clip, Care::Nearest)
+        let straight = ClipTolerance { clips: Clips::Straight, ..self.grower.budget.clip };
+        clip::fit(&self.outline(), true, self.radii, &straight)
     }
 
     /// Whether its corners lie in the ellipse.

@@ -8,7 +8,7 @@ use super::grow::{Domain, Grower};
 use super::margin::disc_inside;
 use super::outline::{Outline, outlines};
 use super::region::Region;
-use crate::fit::clip::{Care, Clips};
+use crate::fit::clip::Clips;
 use crate::fit::pose::Pose;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
@@ -129,7 +129,7 @@ fn finish(
     let kept = region.gather(grower.surface, &pose, splat.radii, seeds)
         && grower.keeps(&pose, splat.radii, splat.curvature, line, ROUNDED_SLACK, region);
     splat.clips =
-        kept.then(|| grower.clips(&pose, splat.radii, splat.curvature, Care::Nearest, region).ok())??;
+        kept.then(|| grower.clips(&pose, splat.radii, splat.curvature, Look::Fine, region).ok())??;
     if !Backing::of(grower, &pose, splat.radii, splat.curvature, region, Look::Fine).holds(&splat.clips) {
         return None;
     }
