@@ -26,7 +26,7 @@ const RIM: [f64; 2] = [0.3, 0.5];
 const LEANS: [f64; 5] = [0.3, 0.5, 1.0, 2.0, 3.0];
 
 /// Places around the rim.
-const AROUND: u32 = 12;
+const AROUND: u32 = 24;
 
 fn cylinder() -> Asset {
     let fixture = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name);

@@ -120,13 +120,15 @@ impl Conic {
     }
 
     /// How far a place, on either side, lies from the curve, to first order. The plane may be shrunk by
-    /// `scale` along its axes; the distance is that before.
+    /// `scale` along its axes; the distance is that before. Beyond its ends the curve goes on along its
+    /// tangents, as the line does that it follows.
     ///
     /// With the areas of [`Self::cuts`] the curve is where `f = (1-rho)² l2² - 4 rho² l1 l3` vanishes, and
     /// `|f| / |grad f|` is how far off that is (Taubin 1991). The rest of an ellipse lies next to a flat arc:
     /// on its side, the factor `2 rho sqrt(l1 l3) - (1-rho) l2` takes the place of `f`, as it vanishes on the
-    /// arc alone. Other parts of the conic lie outside the triangle, which no place outside is nearer to than
-    /// to the lines along its sides.
+    /// arc alone, but for beside the ends, where it grows as the root of the distance does and tells up to twice
+    /// as much: the lesser of the two holds. Other parts of the conic lie outside the triangle, which no place
+    /// outside is nearer to than to the lines along its sides.
     #[must_use]
     pub fn distance(&self, q: DVec2, scale: DVec2) -> f64 {
         let slope = |a: DVec2, b: DVec2| DVec2::new(a.y - b.y, b.x - a.x) / scale;
@@ -145,12 +147,18 @@ impl Conic {
         let curved = product.max(0.0).sqrt();
         let level = (1.0 - self.rho) * s2;
         let bent = 2.0 * self.rho * self.rho * (l1 * s3 + l3 * s1);
+        let whole = |chordal: f64| off((chordal * chordal - product).abs(), 2.0 * (chordal * level - bent));
         let near = if self.rho <= 0.5 && curved > 0.0 && chordal < curved {
-            off(curved - chordal, bent / curved - level)
+            whole(chordal.max(0.0)).min(off(curved - chordal, bent / curved - level))
         } else {
-            off((chordal * chordal - product).abs(), 2.0 * (chordal * level - bent))
+            whole(chordal)
         };
-        near.max(outside)
+        let along = |a: DVec2, b: DVec2| ((q - b) * scale).dot((b - a) * scale) > 0.0;
+        let gone_on = [(along(self.p2, self.p3), l1, s1), (along(self.p2, self.p1), l3, s3)]
+            .into_iter()
+            .filter(|&(beyond, ..)| beyond)
+            .map(|(_, l, slope)| off(l.abs(), slope));
+        gone_on.fold(near.max(outside), f64::min)
     }
 
     /// The point at parameter `t` in `[0, 1]`.
@@ -274,6 +282,25 @@ mod tests {
                         assert!(found <= most * distance + 1e-9, "rho {rho} {q}: {found}");
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn beside_the_ends_of_arcs_distances_are_no_more_than_they_are() {
+        for half in [20.0, 45.0, 67.0] {
+            // The tangents at the ends meet straight above the middle, where the weight is the cosine.
+            let (sin, cos) = libm::sincos(f64::to_radians(half));
+            let rho = cos / (1.0 + cos);
+            let arc = Conic {
+                p1: DVec2::new(-sin, cos),
+                p2: DVec2::new(0.0, 1.0 / cos),
+                p3: DVec2::new(sin, cos),
+                rho,
+            };
+            for (t, inside) in [(0.0, 1e-4), (1e-4, 1e-3), (0.01, 1e-3), (0.99, 1e-3), (1.0, 1e-4)] {
+                let found = arc.distance((1.0 - inside) * arc.point(t), DVec2::ONE);
+                assert!((0.9..1.1).contains(&(found / inside)), "{half}° {t}: {}", found / inside);
             }
         }
     }

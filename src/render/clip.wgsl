@@ -49,6 +49,11 @@ fn off_by(f: f32, slope: vec2<f32>) -> f32 {
     return select(select(sign(f) * NOT_NEAR, f / steep, steep > 0.0), 0.0, f == 0.0);
 }
 
+// Whether a place lies farther along the way from a to b than b.
+fn goes_on(a: vec2<f32>, b: vec2<f32>, q: vec2<f32>, scale: vec2<f32>) -> bool {
+    return dot((q - b) * scale, (b - a) * scale) > 0.0;
+}
+
 // How far a place lies from the curve; twin of `Conic::distance`, which explains it.
 fn distance_from(conic: Conic, q: vec2<f32>, scale: vec2<f32>) -> f32 {
     let s1 = slope_of(conic.p2, conic.p3, scale);
@@ -69,10 +74,21 @@ fn distance_from(conic: Conic, q: vec2<f32>, scale: vec2<f32>) -> f32 {
     let curved = sqrt(max(product, 0.0));
     let level = (1.0 - conic.rho) * s2;
     let bent = 2.0 * conic.rho * conic.rho * (l1 * s3 + l3 * s1);
-    if conic.rho <= 0.5 && curved > 0.0 && chordal < curved {
-        return max(off_by(curved - chordal, bent / curved - level), outside);
+    let on_side = conic.rho <= 0.5 && curved > 0.0 && chordal < curved;
+    let along = select(chordal, max(chordal, 0.0), on_side);
+    let whole = off_by(abs(along * along - product), 2.0 * (along * level - bent));
+    var least = whole;
+    if on_side {
+        least = min(whole, off_by(curved - chordal, bent / curved - level));
     }
-    return max(off_by(abs(chordal * chordal - product), 2.0 * (chordal * level - bent)), outside);
+    least = max(least, outside);
+    if goes_on(conic.p2, conic.p3, q, scale) {
+        least = min(least, off_by(abs(l1), s1));
+    }
+    if goes_on(conic.p2, conic.p1, q, scale) {
+        least = min(least, off_by(abs(l3), s3));
+    }
+    return least;
 }
 
 // How far a place lies from the nearest of a splat's curves.
