@@ -193,7 +193,8 @@ pub fn bake(
     });
     clock.stage(progress, "clip");
     if options.clips != Clips::Partners {
-        cover.save(&grower, &regions, &|splats, trial| saving(splats, max_error, trial))?;
+        let saving = |splats: &mut [Splat], trial: &mut dyn Trial| saving(splats, max_error, trial);
+        cover.save(&grower, &regions, max_error, &saving)?;
     }
     let asset = |splats: Vec<Splat>| Asset {
         frame: cloud.frame,

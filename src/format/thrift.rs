@@ -1,12 +1,15 @@
-//! Clip curves that cost less to tell than those fitted, as far as whoever fitted them says that they do.
+//! Other clip curves than those fitted, as far as whoever fitted them says that they do: that meet those of the next
+//! splats without a step, and cost less to tell.
 //!
 //! A line leaves a curve some room: within it, one that follows a curve told before takes a few bits, and
 //! one in coarse steps takes fewer than one in fine steps.
 
+use std::collections::BTreeSet;
+
 use glam::{DVec2, DVec3};
 
-use super::grid::{GRAINS, Grids, Size};
-use super::lead::Guess;
+use super::grid::{GRAINS, Grids, Size, rho_steps};
+use super::lead::{Form, Guess};
 use super::order;
 use super::predict::History;
 use super::quantize::Quantizer;
@@ -17,6 +20,7 @@ use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::polyline::nearest_on;
 use crate::model::splat::Splat;
 use crate::model::trial::Trial;
+use crate::tolerance::STEP_SHARE;
 
 /// A curve that strays from the fitted one by more than this share of the budget is not tried: both are
 /// to lie within one budget outside the line.
@@ -25,10 +29,14 @@ const FARTHEST: f64 = 0.9;
 /// Places along a curve where it is compared with the fitted one, and sides of that.
 const COMPARED: (usize, usize) = (12, 48);
 
+/// Of curves that leave steps alike but for this share of the budget the cheapest is taken.
+const LEVEL: f64 = 0.5 * STEP_SHARE;
+
 /// At most so many curves are tried for one.
 const TRIED: usize = 24;
 
-/// Puts cheaper clip curves in the place of those of splats that are on the file's grids, where they do.
+/// Puts other clip curves in the place of those of splats that are on the file's grids, where these do: that leave
+/// less of a step, or cost less.
 ///
 /// # Errors
 /// As [`super::encode`], for splats that cannot be stored.
@@ -51,45 +59,121 @@ pub fn save(splats: &mut [Splat], max_error: f64, trial: &mut dyn Trial) -> Resu
 /// Changes the clip curves of one record, one by one.
 fn thrifty(record: &mut Record, history: &History, grids: &Grids, trial: &mut dyn Trial) {
     let speller = Speller::new(record, history, grids);
-    let mut curves: Vec<ClipCurve> =
-        record.clips.iter().map(|clip| grids.clip_curve(clip, record.sizes)).collect();
-    for n in 0..curves.len() {
-        let fitted = curves[n];
-        let mut will_do = |clip: &ClipRecord| {
-            curves[n] = grids.clip_curve(clip, record.sizes);
-            trial.will_do(&curves)
-        };
-        match cheaper(&record.clips[n], record.sizes, &speller, grids, &mut will_do) {
-            Some(clip) => record.clips[n] = clip,
-            None => curves[n] = fitted,
-        }
+    let all: Vec<ClipCurve> = record.clips.iter().map(|clip| grids.clip_curve(clip, record.sizes)).collect();
+    let steps = trial.steps(&all);
+    let mut curves = Curves { all, steps, sizes: record.sizes, grids, trial };
+    for (n, clip) in record.clips.iter_mut().enumerate() {
+        *clip = curves.better(n, clip, &speller).unwrap_or(*clip);
     }
+    let Curves { all, .. } = curves;
+    trial.take(all);
     record.clips.sort_unstable();
 }
 
-/// The cheapest of the curves that cost less than one, lie near it and will do; `None` if none is found.
-fn cheaper(
-    clip: &ClipRecord,
+/// The clip curves of a splat, on trial.
+struct Curves<'a> {
+    all: Vec<ClipCurve>,
+    /// By how much the outline steps at their ends: what comes next is to step by no more.
+    steps: f64,
     sizes: [Size; 2],
-    speller: &Speller<'_>,
-    grids: &Grids,
-    will_do: &mut dyn FnMut(&ClipRecord) -> bool,
-) -> Option<ClipRecord> {
-    let now = speller.cost(&speller.cheapest(clip)?);
-    let fitted: Vec<DVec2> = grids.conic(clip, sizes).points(COMPARED.1).collect();
-    let near = |other: &ClipRecord| strays(&grids.conic(other, sizes), &fitted) <= FARTHEST * grids.budget;
-    let told = others(clip, speller).into_iter().map(|(told, guess)| (speller.cost(&told), told, guess));
-    let mut told: Vec<_> = told.filter(|(cost, ..)| *cost < now).collect();
-    told.sort_by_key(|(cost, ..)| *cost);
-    let mut known = Vec::new();
-    let meant = told.iter().filter_map(|(_, told, guess)| speller.meant_by(told, *guess).ok());
-    let mut new = meant.filter(|other| {
-        !known.contains(other) && {
-            known.push(*other);
-            near(other)
+    grids: &'a Grids,
+    trial: &'a mut dyn Trial,
+}
+
+impl Curves<'_> {
+    /// The curves with another in the place of one.
+    fn with(&self, n: usize, clip: &ClipRecord) -> Vec<ClipCurve> {
+        let mut curves = self.all.clone();
+        curves[n] = self.grids.clip_curve(clip, self.sizes);
+        curves
+    }
+
+    /// Puts one curve in the place of another if it will do and leaves less of a step, or no more; whether it did.
+    fn change(&mut self, n: usize, clip: &ClipRecord) -> bool {
+        let curves = self.with(n, clip);
+        let steps = self.trial.steps(&curves);
+        let changed = steps <= self.steps && self.trial.will_do(&curves);
+        if changed {
+            (self.all, self.steps) = (curves, steps);
         }
-    });
-    new.by_ref().take(TRIED).find(|other| will_do(other))
+        changed
+    }
+
+    /// Of the curves beside one that will do, the cheapest of those that leave the least of a step; `None` if none leaves
+    /// less of one, and none that leaves no more costs less.
+    fn better(&mut self, n: usize, clip: &ClipRecord, speller: &Speller<'_>) -> Option<ClipRecord> {
+        let (grids, sizes) = (self.grids, self.sizes);
+        let fitted: Vec<DVec2> = grids.conic(clip, sizes).points(COMPARED.1).collect();
+        let near =
+            |other: &ClipRecord| strays(&grids.conic(other, sizes), &fitted) <= FARTHEST * grids.budget;
+        let mut offers = self.offers(n, clip, speller)?;
+        offers.sort_by_key(|&(level, cost, _)| (level, cost));
+        let offers = offers.into_iter().map(|(.., other)| other).filter(near);
+        offers.take(TRIED).find(|other| self.change(n, other))
+    }
+
+    /// Curves that leave less of a step than one, or cost less and leave no more: how much, what they cost, and they
+    /// themselves. `None` for numbers that no curve of a file has.
+    fn offers(
+        &self,
+        n: usize,
+        clip: &ClipRecord,
+        speller: &Speller<'_>,
+    ) -> Option<Vec<(u64, u32, ClipRecord)>> {
+        let (now, is_even) = (speller.cost(&speller.cheapest(clip)?), self.steps <= 0.0);
+        let told = others(clip, speller).into_iter().map(|(told, guess)| (speller.cost(&told), told, guess));
+        let mut told: Vec<_> = told.filter(|(cost, ..)| *cost < now || !is_even).collect();
+        told.sort_by_key(|(cost, ..)| *cost);
+        let (mut offers, mut known) = (Vec::new(), BTreeSet::new());
+        for (cost, told, guess) in told {
+            let other = speller.meant_by(&told, guess).ok().filter(|other| known.insert(*other));
+            offers.extend(other.and_then(|other| Some((self.level(n, &other, cost < now)?, cost, other))));
+        }
+        if !is_even {
+            let border = self.grids.border_steps(self.sizes[0]);
+            for other in beside(clip, border).filter(|other| known.insert(*other)) {
+                let cost = || Some(speller.cost(&speller.cheapest(&other)?));
+                let level = self.level(n, &other, false);
+                offers.extend(level.and_then(|level| Some((level, cost()?, other))));
+            }
+        }
+        Some(offers)
+    }
+
+    /// How much of a step a curve leaves in the place of another, in [`LEVEL`]s; `None` if not less, or more where no
+    /// more will do.
+    fn level(&self, n: usize, clip: &ClipRecord, no_more_will_do: bool) -> Option<u64> {
+        let steps = self.trial.steps(&self.with(n, clip));
+        let is_offer = steps < self.steps || (no_more_will_do && steps <= self.steps);
+        is_offer.then(|| (steps / (LEVEL * self.grids.budget)).ceil() as u64)
+    }
+}
+
+/// How many steps each end of a curve is moved either way, where the outline steps,
+const ENDS_MOVED: i64 = 3;
+
+/// and its control point, across the chord.
+const CONTROL_MOVED: i64 = 2;
+
+/// Curves of the same form whose ends and whose control point lie beside those of one, those next to it first.
+fn beside(clip: &ClipRecord, border: u64) -> impl Iterator<Item = ClipRecord> {
+    let clip = *clip;
+    let form = Form::of(&clip);
+    let most = if form == Form::Curved { CONTROL_MOVED } else { 0 };
+    let ends = || -ENDS_MOVED..=ENDS_MOVED;
+    let moves = ends().flat_map(|start| ends().map(move |end| [start, end]));
+    let mut moves: Vec<[i64; 3]> =
+        moves.flat_map(|[start, end]| (-most..=most).map(move |across| [start, end, across])).collect();
+    moves.sort_by_key(|moved| moved.iter().map(|steps| steps.abs()).sum::<i64>());
+    moves.into_iter().skip(1).filter_map(move |[start, end, across]| {
+        let sweep = clip.sweep as i64 + end - start;
+        let start = (clip.start as i64 + start).rem_euclid(border as i64);
+        let control = [clip.control[0], clip.control[1] + across];
+        let share = clip.rho as f64 / rho_steps(clip.control).max(1) as f64;
+        let rho = if across == 0 { clip.rho } else { (share * rho_steps(control) as f64).round() as u64 };
+        let moved = ClipRecord { rho, start: start as u64, sweep: sweep as u64, control };
+        ((1..border as i64).contains(&sweep) && Form::of(&moved) == form).then_some(moved)
+    })
 }
 
 /// Ways to tell curves of the same form that lie no farther from one than steps are long, or that take
@@ -175,6 +259,12 @@ mod tests {
                     .iter()
                     .all(|clip| lines.iter().any(|line| strays(&clip.conic(splat.radii), line) <= self.most))
         }
+
+        fn steps(&self, _: &[ClipCurve]) -> f64 {
+            0.0
+        }
+
+        fn take(&mut self, _: Vec<ClipCurve>) {}
     }
 
     fn planted() -> Asset {
@@ -203,5 +293,46 @@ mod tests {
             after.push(encode(&saved).unwrap().len());
         }
         assert!(after[0] <= before && after[1] < before && after[2] < after[1], "{after:?} for {before}");
+    }
+
+    /// Says that the outline steps by as much as the first end lies from where it was to be, whatever else.
+    struct Even {
+        to: Vec<f64>,
+        at: usize,
+    }
+
+    impl Trial for Even {
+        fn turn_to(&mut self, splat: usize) {
+            self.at = splat;
+        }
+
+        fn steps(&self, clips: &[ClipCurve]) -> f64 {
+            (clips[0].alpha1 - self.to[self.at]).abs()
+        }
+
+        fn will_do(&mut self, _: &[ClipCurve]) -> bool {
+            true
+        }
+
+        fn take(&mut self, _: Vec<ClipCurve>) {}
+    }
+
+    #[test]
+    fn curves_leave_less_of_a_step_whatever_that_costs() {
+        let asset = planted();
+        let step = |splat: &Splat| 0.1 * asset.max_error / splat.radii.max_element();
+        let to = |splat: &Splat| splat.clips.first().map_or(0.0, |clip| clip.alpha1 + step(splat));
+        let mut trial = Even { to: asset.splats.iter().map(to).collect(), at: 0 };
+        let mut splats = asset.splats.clone();
+        save(&mut splats, asset.max_error, &mut trial).unwrap();
+        let mut nearer = 0;
+        for (n, (splat, before)) in splats.iter().zip(&asset.splats).enumerate() {
+            trial.turn_to(n);
+            if !splat.clips.is_empty() {
+                assert!(trial.steps(&splat.clips) <= trial.steps(&before.clips) + 1e-12, "splat {n}");
+                nearer += usize::from(trial.steps(&splat.clips) < 0.6 * step(before));
+            }
+        }
+        assert!(nearer > 60, "{nearer} of 80");
     }
 }

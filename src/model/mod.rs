@@ -3,10 +3,12 @@
 pub mod asset;
 pub mod clip_curve;
 pub mod cloud;
+pub mod curve_ends;
 pub mod discs;
 pub mod frame;
 pub mod intersect;
 pub mod mesh;
+pub mod neighbours;
 pub mod outlook;
 pub mod partner;
 pub mod polyline;

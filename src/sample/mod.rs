@@ -29,6 +29,7 @@ mod set_cover;
 pub mod settle;
 mod shaped;
 mod starts;
+mod steps;
 pub mod thrift;
 mod tighten;
 mod withdraw;

@@ -9,6 +9,7 @@ use super::grow::{Cut, Grower, passes, well_inside};
 use super::outline::Outline;
 use super::region::Region;
 use super::settle::{Candidate, ROUNDED_SLACK};
+use super::steps::Steps;
 use crate::error::Result;
 use crate::fit::clip::ClipTolerance;
 use crate::fit::pose::Pose;
@@ -20,16 +21,28 @@ use crate::model::trial::Trial;
 /// who store nothing: `|_, _| Ok(())`.
 pub type Saving<'a> = dyn Fn(&mut [Splat], &mut dyn Trial) -> Result<()> + Sync + 'a;
 
+/// Times that all curves are gone through: from the second on those of the splats beside one are what they will be, or
+/// nearly so.
+const ROUNDS: usize = 2;
+
 impl Cover {
-    /// Lets clip curves of the chosen be changed.
+    /// Lets clip curves of the chosen be changed, under the bound of the file.
     ///
     /// # Errors
     /// Those of `saving`.
-    pub fn save(&mut self, grower: &Grower, regions: &Regions, saving: &Saving<'_>) -> Result<()> {
+    pub fn save(
+        &mut self,
+        grower: &Grower,
+        regions: &Regions,
+        max_error: f64,
+        saving: &Saving<'_>,
+    ) -> Result<()> {
         let mut splats = self.splats();
         regions.with(|region| {
             let (candidates, chosen) = (&self.candidates, &self.chosen);
-            saving(&mut splats, &mut Cuts { grower, candidates, chosen, region, at: None })
+            let steps = Steps::new(&splats, max_error);
+            let mut cuts = Cuts { grower, candidates, chosen, region, steps, at: None };
+            (0..ROUNDS).try_for_each(|_| saving(&mut splats, &mut cuts))
         })?;
         for (&index, splat) in self.chosen.iter().zip(splats) {
             self.candidates[index].splat = splat;
@@ -44,6 +57,7 @@ struct Cuts<'a> {
     candidates: &'a [Candidate],
     chosen: &'a [usize],
     region: &'a mut Region,
+    steps: Steps,
     at: Option<Uncut<'a>>,
 }
 
@@ -65,6 +79,11 @@ impl Trial for Cuts<'_> {
     fn turn_to(&mut self, splat: usize) {
         let candidate = &self.candidates[self.chosen[splat]];
         self.at = uncut(candidate, self.grower, self.region);
+        self.steps.turn_to(splat);
+    }
+
+    fn steps(&self, clips: &[ClipCurve]) -> f64 {
+        self.steps.sum(clips)
     }
 
     fn will_do(&mut self, clips: &[ClipCurve]) -> bool {
@@ -81,6 +100,10 @@ impl Trial for Cuts<'_> {
                 .border_along(outlines, tolerance, Look::Fine)
                 .is_some_and(|border| followed.iter().all(|&place| passes(&border, place, tolerance.edge)))
             && backing.holds(clips)
+    }
+
+    fn take(&mut self, clips: Vec<ClipCurve>) {
+        self.steps.take(clips);
     }
 }
 

@@ -3,7 +3,7 @@
 //! Ivo, Vidal and Cavalcante-Neto, "A new method for cutting splats of models with sharp
 //! features", sections III and IV; Ivo 2020, 2.1 and Fig. 11. Four steps, each a file:
 //!
-//! 1. `neighbours`: splats nearer than their radii reach (equation 1, whose sign is a
+//! 1. [`neighbours`]: splats nearer than their radii reach (equation 1, whose sign is a
 //!    misprint).
 //! 2. `meeting`: where two of them cross at an angle (equations 2 to 13).
 //! 3. `sides`: whether a splat keeps what its partner sees or what it does not (equation
@@ -19,7 +19,6 @@
 
 mod groups;
 mod meeting;
-mod neighbours;
 mod sides;
 #[cfg(test)]
 mod tests;
@@ -27,6 +26,7 @@ mod tests;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::model::neighbours::neighbours;
 use crate::model::partner::{Cut, Group, Partner};
 use crate::model::splat::Splat;
 
@@ -95,7 +95,7 @@ pub fn clip_partners(splats: &[Splat], shown: &[Shown], rule: &Rule) -> (Vec<Vec
 
 /// For each splat, the splats that meet it, ascending, with the side it keeps of each.
 fn candidates(splats: &[Splat], shown: &[Shown], rule: &Rule) -> Vec<Vec<Candidate>> {
-    let pairs = neighbours::neighbours(splats);
+    let pairs = neighbours(splats);
     let met: Vec<_> = pairs
         .par_iter()
         .filter_map(|&[a, b]| {

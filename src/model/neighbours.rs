@@ -1,10 +1,11 @@
 //! Splats that are near enough to meet.
 
-use crate::model::splat::Splat;
+use super::splat::Splat;
 
 /// Pairs of splats, each ascending and all in order, whose centres are nearer than their radii
 /// reach together (equation 1 of the paper, which prints the sign the other way round).
-pub(super) fn neighbours(splats: &[Splat]) -> Vec<[u32; 2]> {
+#[must_use]
+pub fn neighbours(splats: &[Splat]) -> Vec<[u32; 2]> {
     let reach: Vec<f64> = splats.iter().map(Splat::bounding_radius).collect();
     let low = |n: u32| splats[n as usize].center.x - reach[n as usize];
     let mut order: Vec<u32> = (0..splats.len() as u32).collect();
