@@ -40,6 +40,9 @@ pub struct Measures {
     pub normal: Angles,
     /// Between feature lines and clipped borders, both ways; `None` without feature lines.
     pub edge: Option<Distances>,
+    /// Steps of the outline where clip curves end; `None` where clip partners cut.
+    #[serde(default)]
+    pub steps: Option<Steps>,
     /// Pixels where only one of input and splats is hit.
     pub holes: Holes,
     /// The shaded picture of the splats beside that of the input.
@@ -61,6 +64,17 @@ pub struct Distances {
     pub max: f64,
     /// A place where it is the largest, input units; `None` where nothing was measured.
     pub at: Option<[f64; 3]>,
+}
+
+/// Steps of the outline where the clip curve of one splat ends beside that of the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Steps {
+    /// Ends of clip curves that the outline goes through.
+    pub ends: u64,
+    /// Those at which it steps by more than [`STEP_SHARE`](crate::tolerance::STEP_SHARE) of the bound.
+    pub uneven: u64,
+    /// The largest step, a fraction of the diagonal.
+    pub max: f64,
 }
 
 /// A set of angles, degrees in `[0, 180]`.

@@ -32,6 +32,7 @@ pub mod seen;
 mod segment;
 pub mod sights;
 mod spread;
+mod steps;
 pub mod surface;
 mod triangles;
 pub mod views;
@@ -42,7 +43,7 @@ use crate::error::Result;
 use crate::model::asset::Asset;
 use crate::render::input::Model;
 pub use measures::Measures;
-use measures::{CLOUD, Cost, Distances, MESH, SCHEMA};
+use measures::{CLOUD, Cost, Distances, MESH, SCHEMA, Steps};
 pub use reference::Reference;
 
 /// What is measured, and against what.
@@ -100,6 +101,7 @@ fn against(
     let surface = surface::surface(asset, &reference.surface)?;
     tell("edge");
     let edge = lines.and_then(|lines| edge::edge(asset, lines));
+    let steps = steps::steps(asset);
     tell("views");
     let seen = seen::seen(asset, &reference.drawn)?;
     tell("cost");
@@ -128,6 +130,7 @@ fn against(
         backward: shares(surface.backward),
         normal: surface.normal,
         edge: edge.map(shares),
+        steps: steps.map(|steps| Steps { max: share(steps.max), ..steps }),
         holes: seen.holes,
         image: seen.image,
         views: seen.views,

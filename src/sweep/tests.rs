@@ -33,6 +33,7 @@ fn outcome(budget: f64, splats: f64) -> Outcome {
         backward: distances(1.5 * budget),
         normal: Angles { rms_deg: 1.0, p99_deg: 3.0 },
         edge: Some(distances(budget)),
+        steps: None,
         holes: Holes::default(),
         image: Image {
             flip_mean: 2.0 * budget,

@@ -18,6 +18,7 @@ fn sound() -> Measures {
         backward: Distances { max: 2e-3, ..distances },
         normal: Angles { rms_deg: 1.0, p99_deg: 3.0 },
         edge: Some(distances),
+        steps: Some(Steps::default()),
         holes: Holes { pixels: 1000, ..Holes::default() },
         image: Image { psnr: 40.0, ..Image::default() },
         views: vec![ViewMeasures::default()],

@@ -5,6 +5,7 @@ mod page;
 use super::table::{Table, points};
 use crate::measure::Measures;
 use crate::measure::measures::Distances;
+use crate::tolerance::STEP_SHARE;
 pub use page::write_page;
 
 /// The measures as lines of plain text, ending in a line break.
@@ -40,6 +41,11 @@ fn errors(text: &mut Table, measures: &Measures) {
     let normal = &measures.normal;
     text.row("normal", format!("rms {:.2}°, p99 {:.2}°", normal.rms_deg, normal.p99_deg));
     text.row("edge", measures.edge.as_ref().map_or_else(|| "no feature lines".into(), distances));
+    if let Some(steps) = &measures.steps {
+        let budgets = if measures.budget > 0.0 { steps.max / measures.budget } else { 0.0 };
+        let of = format!("of {} ends of clip curves by more than {STEP_SHARE} budgets", steps.ends);
+        text.row("steps", format!("{} {of}, max {:.2e} ({budgets:.2} budgets)", steps.uneven, steps.max));
+    }
 }
 
 fn pictures(text: &mut Table, measures: &Measures) {
