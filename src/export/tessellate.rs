@@ -83,7 +83,7 @@ struct Sheet<'a> {
 
 impl<'a> Sheet<'a> {
     fn new(splat: &'a Splat, tolerance: Tolerance) -> Self {
-        let conics = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+        let conics = splat.conics();
         let sagitta = (splat.curvature * splat.radii * splat.radii).abs();
         let greatest = sagitta.max_element();
         let (part, step) = if greatest > 0.0 {

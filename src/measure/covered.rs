@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::box_tree::BoxTree;
 use crate::model::asset::Asset;
 use crate::model::clip_curve::Conic;
+use crate::model::curve_ends::APART;
 use crate::model::splat::Splat;
 
 /// Error bounds by which a place at a feature edge must lie inside another splat's border. Both sides
@@ -15,9 +16,6 @@ const INSIDE: f64 = 3.0;
 /// A place farther from every line than this, in error bounds, is at no feature edge: what covers it
 /// at all hides a border there.
 pub(super) const AT_EDGE: f64 = 1.0;
-
-/// Error bounds that two splats over one place may lie apart.
-const APART: f64 = 2.0;
 
 /// Directions in which the border is looked for.
 const AROUND: u32 = 8;
@@ -31,8 +29,7 @@ pub(super) struct Insides<'a> {
 
 impl<'a> Insides<'a> {
     pub(super) fn new(asset: &'a Asset) -> Self {
-        let conics = |splat: &Splat| splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
-        let splats = asset.splats.iter().map(|splat| (splat, conics(splat))).collect();
+        let splats = asset.splats.iter().map(|splat| (splat, splat.conics())).collect();
         let around = |splat: &Splat| {
             let reach = DVec3::splat(splat.bounding_radius());
             Some((splat.center - reach, splat.center + reach))

@@ -81,7 +81,7 @@ pub fn fit(points: &[Vec3], asset: &Asset, reach: f64) -> Fit {
 /// The points a splat covers within `reach`, with their distances.
 fn covered(splat: &Splat, grid: &PointGrid, points: &[Vec3], reach: f64) -> impl Iterator<Item = (u32, f64)> {
     let (low, high) = bounds(splat, reach);
-    let conics: Vec<_> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+    let conics = splat.conics();
     grid.near(low, high).filter_map(move |point| {
         let local = splat.to_local(points[point as usize].as_dvec3());
         let uv = local.truncate();

@@ -36,7 +36,7 @@ pub(super) struct Foot {
 impl<'a> Patch<'a> {
     /// Takes a splat's border apart.
     pub(super) fn new(splat: &'a Splat) -> Self {
-        let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+        let conics = splat.conics();
         let pieces = border(splat, &conics);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for piece in &pieces {

@@ -4,7 +4,7 @@
 use super::measures::Steps;
 use crate::model::asset::Asset;
 use crate::model::clip_curve::Conic;
-use crate::model::curve_ends::{beyond, ends, over};
+use crate::model::curve_ends::{ends, step};
 use crate::model::neighbours::neighbours;
 use crate::model::splat::Splat;
 use crate::tolerance::STEP_SHARE;
@@ -14,8 +14,7 @@ pub(super) fn steps(asset: &Asset) -> Option<Steps> {
     if asset.splats.iter().any(|splat| !splat.partners.is_empty()) {
         return None;
     }
-    let conics = |splat: &Splat| splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
-    let conics: Vec<Vec<Conic>> = asset.splats.iter().map(conics).collect();
+    let conics: Vec<Vec<Conic>> = asset.splats.iter().map(Splat::conics).collect();
     let mut near: Vec<Vec<u32>> = vec![Vec::new(); asset.splats.len()];
     for [a, b] in neighbours(&asset.splats) {
         near[a as usize].push(b);
@@ -25,11 +24,9 @@ pub(super) fn steps(asset: &Asset) -> Option<Steps> {
     for (index, splat) in asset.splats.iter().enumerate() {
         for end in ends(splat, &conics[index]) {
             let others = near[index].iter().map(|&other| other as usize);
-            let steps = others.filter_map(|other| {
-                Some(beyond(&conics[other], over(&asset.splats[other], &end, asset.max_error)?))
-            });
+            let others = others.map(|other| (&asset.splats[other], conics[other].as_slice()));
             // Beside nothing the surface ends with the curve.
-            let step = steps.min_by(f64::total_cmp).unwrap_or(0.0);
+            let step = step(&end, others, asset.max_error).unwrap_or(0.0);
             found.ends += 1;
             found.uneven += u64::from(step > STEP_SHARE * asset.max_error);
             found.max = found.max.max(step);

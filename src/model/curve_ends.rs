@@ -10,7 +10,7 @@ use super::clip_curve::Conic;
 use super::splat::Splat;
 
 /// Error bounds that two splats of one sheet may lie apart over a place.
-const APART: f64 = 2.0;
+pub const APART: f64 = 2.0;
 
 /// The normals of two splats of one sheet differ by less than this cosine tells, 45°.
 const ONE_WAY: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -44,6 +44,17 @@ pub fn over(splat: &Splat, end: &End, max_error: f64) -> Option<DVec2> {
         && (local.z - splat.height(uv)).abs() <= APART * max_error
         && splat.normal(uv).dot(end.normal) > ONE_WAY;
     is_over.then_some(uv)
+}
+
+/// By how much the outline steps back at an end of one splat's curve to the outermost of the curves of others, each
+/// given with its own; `None` where none of them is there.
+pub fn step<'a>(
+    end: &End,
+    others: impl Iterator<Item = (&'a Splat, &'a [Conic])>,
+    max_error: f64,
+) -> Option<f64> {
+    let steps = others.filter_map(|(splat, conics)| Some(beyond(conics, over(splat, end, max_error)?)));
+    steps.min_by(f64::total_cmp)
 }
 
 /// How far a place lies beyond curves, by which the outline would step back there; 0 for one that none cuts away.

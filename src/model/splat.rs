@@ -7,7 +7,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::clip_curve::ClipCurve;
+use super::clip_curve::{ClipCurve, Conic};
 use super::partner::{self, Group};
 
 /// One splat, in model units.
@@ -103,6 +103,12 @@ impl Splat {
     #[must_use]
     pub fn partners_cut(&self, uv: DVec2) -> bool {
         !self.partners.is_empty() && partner::cuts(&self.partners, self.surface_point(uv))
+    }
+
+    /// Its clip curves, worked out for many tests.
+    #[must_use]
+    pub fn conics(&self) -> Vec<Conic> {
+        self.clips.iter().map(|clip| clip.conic(self.radii)).collect()
     }
 
     /// Whether anything cuts it.

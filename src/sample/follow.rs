@@ -15,7 +15,6 @@ use super::owners::Owners;
 use super::seal::Task;
 use crate::analyse::surface::{NONE, Rows, Surface};
 use crate::fit::ellipse::holds;
-use crate::model::clip_curve::Conic;
 use crate::model::polyline::{nearest_on, straightened};
 use crate::model::splat::Splat;
 
@@ -103,7 +102,7 @@ fn beside(surface: &Surface, owners: &Owners, joined: &Rows, from: u32) -> Vec<u
 
 /// The clipped borders of a splat, for a tolerance.
 fn borders(splat: &Splat, tolerance: f64) -> Vec<[DVec3; 2]> {
-    let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+    let conics = splat.conics();
     let mut found = Vec::new();
     for (own, conic) in conics.iter().enumerate() {
         let cuts = |uv: DVec2| conics.iter().enumerate().any(|(n, conic)| n != own && conic.cuts(uv));

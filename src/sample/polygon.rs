@@ -365,7 +365,7 @@ mod tests {
             let (_, least) = circumellipse(corners.map(|corner| corner.truncate()));
             less_padded +=
                 u32::from(splat.radii.max_element() < least.max_element() + 0.9 * grower.budget.pad);
-            let conics: Vec<Conic> = splat.clips.iter().map(|clip| clip.conic(splat.radii)).collect();
+            let conics = splat.conics();
             let grid =
                 (-50..=50).flat_map(|i| (-50..=50).map(move |j| DVec2::new(i.into(), j.into()) / 50.0));
             let uvs = grid.filter(|unit| unit.length_squared() <= 1.0).map(|unit| unit * splat.radii);

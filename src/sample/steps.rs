@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::analyse::surface::Rows;
 use crate::model::clip_curve::{ClipCurve, Conic};
-use crate::model::curve_ends::{End, beyond, ends, over};
+use crate::model::curve_ends::{End, beyond, ends, over, step};
 use crate::model::neighbours::neighbours;
 use crate::model::splat::Splat;
 use crate::tolerance::STEP_SHARE;
@@ -62,7 +62,7 @@ impl Steps {
     /// others over it, if these were its curves: what goes beyond [`STEP_SHARE`] of the bound.
     pub(super) fn sum(&self, clips: &[ClipCurve]) -> f64 {
         let Cut { splat, .. } = &self.splats[self.at];
-        let conics = conics(clips, splat);
+        let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(splat.radii)).collect();
         let own = ends(splat, &conics).map(|end| self.step(self.at as u32, None, &end));
         let others = self.ends.iter().map(|end| end.step.min(beyond(&conics, end.uv)));
         own.chain(others).map(|step| (step - STEP_SHARE * self.max_error).max(0.0)).sum()
@@ -78,22 +78,16 @@ impl Steps {
     fn step(&self, splat: u32, left_out: Option<usize>, end: &End) -> f64 {
         let others = self.near.row(splat).iter().map(|&other| other as usize);
         let others = others.filter(|&other| Some(other) != left_out).map(|other| &self.splats[other]);
-        let steps = others
-            .filter_map(|Cut { splat, conics }| Some(beyond(conics, over(splat, end, self.max_error)?)));
-        steps.fold(self.max_error, f64::min)
+        let others = others.map(|Cut { splat, conics }| (splat, conics.as_slice()));
+        step(end, others, self.max_error).map_or(self.max_error, |step| step.min(self.max_error))
     }
 }
 
 impl Cut {
     fn new(splat: Splat) -> Self {
-        let conics = conics(&splat.clips, &splat);
+        let conics = splat.conics();
         Self { splat, conics }
     }
-}
-
-/// Curves of a splat, worked out.
-fn conics(clips: &[ClipCurve], splat: &Splat) -> Vec<Conic> {
-    clips.iter().map(|clip| clip.conic(splat.radii)).collect()
 }
 
 #[cfg(test)]
