@@ -206,6 +206,7 @@ pub fn bake(
         splats,
     };
     clock.stage(progress, "seal");
+    cover.store(&grower);
     for _ in 0..mendings.max(1) {
         let followed = if options.clips == Clips::Partners { 0 } else { cover.follow(&grower, &regions) };
         let Faults { open, beside } = looking.faults(&asset(cover.splats()))?;

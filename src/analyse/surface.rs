@@ -3,6 +3,8 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use crate::model::triangle::to_triangle;
+
 /// Marks the absence of a point.
 pub const NONE: u32 = u32::MAX;
 
@@ -260,6 +262,16 @@ impl Surface {
         }
         let [a, b, c] = self.pieces[piece as usize].map(|corner| self.point(corner));
         (a + b + c) / 3.0
+    }
+
+    /// The squared distance of a place from a piece, in squared model units.
+    #[must_use]
+    pub fn distance_squared(&self, piece: u32, place: DVec3) -> f64 {
+        if let Some(spot) = self.spots.get(piece as usize) {
+            return spot.position.as_dvec3().distance_squared(place);
+        }
+        let corners = self.pieces[piece as usize].map(|corner| self.point(corner));
+        to_triangle(corners, place).length_squared()
     }
 
     /// How far a piece stands for the surface around it, model units; 0 for a triangle.

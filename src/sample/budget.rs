@@ -109,6 +109,13 @@ impl Budget {
         }
     }
 
+    /// The same for straight cuts as far outside their lines as these may lie: they miss nothing.
+    #[must_use]
+    pub fn cut_wide(&self) -> Self {
+        let clip = ClipTolerance { outset: self.clip.edge - self.clip.rounding, ..self.clip };
+        Self { clip, ..*self }
+    }
+
     /// Whether a quadric may reach over a place that lies so far above it. `slack` multiplies the
     /// distances allowed.
     #[must_use]

@@ -109,6 +109,13 @@ impl Cover {
         self.chosen.iter().map(|&index| self.candidates[index].splat.clone()).collect()
     }
 
+    /// Rounds the clip curves of all candidates to what is stored: what is looked for from here on is whether rays pass
+    /// them.
+    pub fn store(&mut self, grower: &Grower) {
+        let candidates = std::mem::take(&mut self.candidates).into_par_iter();
+        self.candidates = candidates.map(|candidate| candidate.stored(grower)).collect();
+    }
+
     /// What the chosen cost.
     pub(super) fn cost(&self) -> f64 {
         self.chosen.iter().map(|&index| cost(&self.candidates[index].splat)).sum()

@@ -65,6 +65,13 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     Some(Candidate { splat, end_clips, last_resort: true, pieces: vec![piece], rank: 3 })
 }
 
+/// The same, cut as far outside its sides as borders may lie: rounded, two triangles that meet may lie so far apart that
+/// a ray at a slant passes between them.
+#[must_use]
+pub fn wide(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidate> {
+    over(&Grower { budget: grower.budget.cut_wide(), ..*grower }, piece, region)
+}
+
 /// The direction across a triangle; for corners in a line, the one across that line that is nearest to another.
 fn upright([a, b, c]: [DVec3; 3], other: DVec3) -> DVec3 {
     let sides = [b - a, c - b, a - c];
@@ -345,6 +352,21 @@ mod tests {
                 center.distance(surface.middle(piece)) < 1e-9 && (radii - radius).abs().max_element() < 1e-9
             );
         }
+    }
+
+    #[test]
+    fn a_wide_one_goes_on_beyond_its_sides_as_far_as_borders_may() {
+        let positions = vec![Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.25, 0.45, 0.0)];
+        let welded = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
+        let surface = split(&welded, &[false; 3]);
+        let round = |splat: &Splat| Some(splat.clone());
+        let grower = grower(&surface, &round);
+        let reaches = |make: fn(&Grower, u32, &mut Region) -> Option<Candidate>, bounds: f64| {
+            let splat = make(&grower, 0, &mut Region::new(3)).unwrap().splat;
+            splat.covers(splat.to_local(DVec3::new(0.25, -bounds * BOUND, 0.0)).truncate())
+        };
+        assert!(reaches(over, 0.35) && !reaches(over, 0.55));
+        assert!(reaches(wide, 0.75) && !reaches(wide, 0.9));
     }
 
     #[test]

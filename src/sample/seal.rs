@@ -38,9 +38,9 @@ impl Task for Sight {
         self.is_stopped(splat)
     }
 
-    /// That nearest to where the ray meets the surface.
+    /// That where the ray meets the surface.
     fn piece(&self, surface: &Surface) -> Option<u32> {
-        let distance = |piece: u32| surface.middle(piece).distance_squared(self.at);
+        let distance = |piece: u32| surface.distance_squared(piece, self.at);
         (0..surface.pieces.len() as u32).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
     }
 }
@@ -87,7 +87,7 @@ impl Cover {
         let piece = task.piece(grower.surface)?;
         let serves = |made: &Candidate| task.is_done_by(&made.splat) && self.is_inside(made);
         let made = |make: Make| made_within(&NEARER, grower, regions, (make, piece), serves);
-        made(grown).or_else(|| made(polygon::over))
+        made(grown).or_else(|| made(polygon::over)).or_else(|| made(polygon::wide))
     }
 }
 
@@ -114,7 +114,7 @@ pub(super) fn grown(grower: &Grower<'_>, piece: u32, region: &mut Region) -> Opt
 /// A way to make a splat over a piece: [`grown`] or [`polygon::over`](super::polygon::over).
 pub(super) type Make = fn(&Grower<'_>, u32, &mut Region) -> Option<Candidate>;
 
-/// The splat made over a piece that serves, within the first of some shares of the budget.
+/// The splat made over a piece that serves once it is stored, within the first of some shares of the budget.
 pub(super) fn made_within(
     shares: &[f64],
     grower: &Grower,
@@ -124,7 +124,7 @@ pub(super) fn made_within(
 ) -> Option<Candidate> {
     shares.iter().find_map(|&share| {
         let nearer = Grower { budget: grower.budget.scaled(share), ..*grower };
-        regions.with(|region| make(&nearer, piece, region)).filter(&serves)
+        regions.with(|region| make(&nearer, piece, region)).map(|made| made.stored(grower)).filter(&serves)
     })
 }
 
@@ -133,6 +133,7 @@ pub(super) mod tests {
     use super::*;
     use crate::analyse::surface::{NONE, Rows, Spot};
     use crate::fit::clip::Clips;
+    use crate::model::clip_curve::ClipCurve;
     use crate::sample::budget::Budget;
     use crate::sample::cover::tests::candidate;
     use glam::{DVec2, DVec3, Vec3};
@@ -198,6 +199,33 @@ pub(super) mod tests {
         let mut cover = cover(&[(3.0, 1.0)]);
         assert_eq!(cover.seal(&grower, &Regions::new(3), &sights(&[0.09])), 1);
         assert!(cover.candidates[cover.chosen[1]].last_resort);
+    }
+
+    #[test]
+    fn splats_are_judged_as_they_are_stored() {
+        let cut = |splat: &Splat, angle: f64| Splat {
+            clips: vec![ClipCurve::chord(angle, std::f64::consts::PI - angle)],
+            ..splat.clone()
+        };
+        let surface = lone_spot();
+        let round = |splat: &Splat| Some(cut(splat, 0.2));
+        let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
+        let made = |_: &Grower<'_>, _: u32, _: &mut Region| {
+            let whole = candidate(&[0]);
+            Some(Candidate {
+                splat: Splat { clips: vec![ClipCurve::chord(0.3, 2.0)], ..whole.splat },
+                ..whole
+            })
+        };
+        // Between the two chords.
+        let keeps = |made: &Candidate| !made.splat.covers(DVec2::new(0.0, 0.25));
+        assert!(made_within(&[1.0], &grower, &Regions::new(3), (made, 0), keeps).is_some());
+        let mut cover = cover(&[(0.0, 1.0), (3.0, 1.0)]);
+        cover.candidates[0].splat.clips = vec![ClipCurve::chord(0.3, 2.0)];
+        let uncut = cover.candidates[1].splat.clone();
+        cover.store(&grower);
+        assert_eq!(cover.candidates[0].splat, cut(&cover.candidates[0].splat, 0.2));
+        assert_eq!(cover.candidates[1].splat, uncut, "what was rounded and not cut is stored as it is");
     }
 
     #[test]

@@ -46,6 +46,18 @@ pub struct Candidate {
     pub rank: u8,
 }
 
+impl Candidate {
+    /// With its clip curves as they come out of the file, where they lie up to their share of the bound off.
+    #[must_use]
+    pub(super) fn stored(mut self, grower: &Grower) -> Self {
+        if !self.splat.clips.is_empty() {
+            // What was rounded before it was cut is on the grids, so that only the cuts are rounded.
+            self.splat = (grower.round)(&self.splat).unwrap_or(self.splat);
+        }
+        self
+    }
+}
+
 /// The splat of a grown domain, or of the largest smaller one that holds when rounded.
 pub(super) fn settle(
     grower: &Grower,
