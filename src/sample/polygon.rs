@@ -65,11 +65,13 @@ pub fn over(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidat
     Some(Candidate { splat, end_clips, last_resort: true, pieces: vec![piece], rank: 3 })
 }
 
-/// The same, cut as far outside its sides as borders may lie: rounded, two triangles that meet may lie so far apart that
-/// a ray at a slant passes between them.
+/// The same over a triangle, cut as far outside its sides as borders may lie: rounded, two that meet may lie so far
+/// apart that a ray at a slant passes between them. `None` for a point of a cloud, whose curves follow lines less
+/// exactly than chords do sides.
 #[must_use]
 pub fn wide(grower: &Grower, piece: u32, region: &mut Region) -> Option<Candidate> {
-    over(&Grower { budget: grower.budget.cut_wide(), ..*grower }, piece, region)
+    let wide = Grower { budget: grower.budget.cut_wide(), ..*grower };
+    grower.surface.spots.is_empty().then(|| over(&wide, piece, region))?
 }
 
 /// The direction across a triangle; for corners in a line, the one across that line that is nearest to another.
