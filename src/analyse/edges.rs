@@ -73,6 +73,12 @@ impl Edges {
         &self.halves[edge.first as usize..(edge.first + edge.faces) as usize]
     }
 
+    /// The edges along which the surface is cut open: feature edges, and where it ends.
+    pub fn cut<'a>(&'a self, marked: &'a [bool]) -> impl Iterator<Item = &'a Edge> {
+        let marked = self.edges.iter().zip(marked);
+        marked.filter(|(edge, mark)| **mark || self.pair(edge).is_none()).map(|(edge, _)| edge)
+    }
+
     /// The two sides of an edge where exactly two faces meet and agree on their outside.
     #[must_use]
     pub fn pair(&self, edge: &Edge) -> Option<(Half, Half)> {

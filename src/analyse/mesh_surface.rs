@@ -12,7 +12,7 @@ use super::refine::{Fineness, Refined, Side, refine};
 use super::split::split;
 use super::surface::Surface;
 use super::weld::{Welded, weld};
-use super::worth::{Worth, carry_folds_on, drop_needless};
+use super::worth::{Worth, drop_needless, mark_folds};
 use crate::model::mesh::Mesh;
 
 /// Which edges of a mesh are feature edges, beside its borders.
@@ -104,7 +104,7 @@ impl Marked {
             let edges = Edges::of(&welded.triangles);
             drop_needless(&welded, &edges, &making.worth, LONG * shortest, &mut marked);
             chains::drop_short(&welded.positions, &edges, *shortest, &mut marked);
-            carry_folds_on(&welded, &edges, &making.worth, &mut marked);
+            mark_folds(&welded, &edges, &making.worth, &mut marked);
             found.feature_edges = marked.iter().filter(|mark| **mark).count();
         }
         (Self { welded, marked, max_error: making.worth.max_error }, found)
@@ -150,8 +150,7 @@ pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<V
         }
     };
     let edges = Edges::of(&welded.triangles);
-    let cut = edges.edges.iter().zip(&marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
-    let found = cut.map(|(edge, _)| welded.places(edge.ends));
+    let found = edges.cut(&marked).map(|edge| welded.places(edge.ends));
     found.chain(given).map(|segment| segment.to_vec()).collect()
 }
 

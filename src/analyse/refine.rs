@@ -109,8 +109,7 @@ fn without_waiting(welded: &Welded, edges: &Edges, long: &[bool], part_of: &[u32
 /// Which vertices lie on feature edges or where the surface ends.
 fn on_line(welded: &Welded, edges: &Edges, marked: &[bool]) -> Vec<bool> {
     let mut on_line = vec![false; welded.positions.len()];
-    let lines = edges.edges.iter().zip(marked).filter(|(edge, mark)| **mark || edges.pair(edge).is_none());
-    lines.flat_map(|(edge, _)| edge.ends).for_each(|end| on_line[end as usize] = true);
+    edges.cut(marked).flat_map(|edge| edge.ends).for_each(|end| on_line[end as usize] = true);
     on_line
 }
 

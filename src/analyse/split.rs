@@ -23,13 +23,9 @@ pub fn split(welded: &Welded, marked: &[bool]) -> Surface {
     }
     let (point_of, vertex_of) = number_points(welded, &mut corners);
     let mut border_next = vec![NONE; vertex_of.len()];
-    for (edge, &mark) in edges.edges.iter().zip(marked) {
-        if mark || edges.pair(edge).is_none() {
-            for half in edges.halves(edge) {
-                let corner = |step: u32| 3 * half.face + (u32::from(half.corner) + step) % 3;
-                border_next[point_of[corner(0) as usize] as usize] = point_of[corner(1) as usize];
-            }
-        }
+    for half in edges.cut(marked).flat_map(|edge| edges.halves(edge)) {
+        let corner = |step: u32| 3 * half.face + (u32::from(half.corner) + step) % 3;
+        border_next[point_of[corner(0) as usize] as usize] = point_of[corner(1) as usize];
     }
     assemble(welded, &point_of, &vertex_of, border_next)
 }

@@ -109,7 +109,7 @@ impl Budget {
         }
     }
 
-    /// The same for straight cuts as far outside their lines as these may lie: they miss nothing.
+    /// All of it for straight cuts that lie as far outside their lines as rounding allows: they miss nothing.
     #[must_use]
     pub fn cut_wide(&self) -> Self {
         let clip = ClipTolerance { outset: self.clip.edge - self.clip.rounding, ..self.clip };

@@ -111,7 +111,7 @@ pub(super) fn grown(grower: &Grower<'_>, piece: u32, region: &mut Region) -> Opt
     grower.grow(piece, region)
 }
 
-/// A way to make a splat over a piece: [`grown`] or [`polygon::over`](super::polygon::over).
+/// A way to make a splat over a piece: [`grown`], [`polygon::over`] or [`polygon::wide`].
 pub(super) type Make = fn(&Grower<'_>, u32, &mut Region) -> Option<Candidate>;
 
 /// The splat made over a piece that serves once it is stored, within the first of some shares of the budget.
