@@ -39,6 +39,7 @@ mod open_places;
 pub mod orient;
 pub mod outliers;
 pub mod partners;
+mod patches;
 #[cfg(test)]
 pub(crate) mod planted;
 pub mod refine;

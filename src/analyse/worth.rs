@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::chains::{Chain, chains};
 use super::edge_paths::EdgePaths;
-use super::edges::{Edges, Half, crease_cosine, face_normals};
+use super::edges::{Edge, Edges, Half};
 use super::marks::Marks;
-use super::surface::NONE;
+use super::patches::{Disc, Patches};
 use super::weld::Welded;
 
 /// How far the farthest of some points lies from a splat fitted to them, given about its normal.
@@ -47,10 +47,6 @@ const LEAST_MISS: f64 = 0.25;
 /// A crease matters where a splat over it misses by this many times what those beside it do.
 const SHARPER: f64 = 2.0;
 
-/// A face whose normal is turned farther from the mean than this (cosine of 75°) cannot be part
-/// of one splat.
-const FOLDED: f64 = 0.26;
-
 /// A crease whose faces turn from each other by more than this (cosine of 60°) is a fold. It matters where no splat
 /// fits beside it, and wherever one over the two faces misses them: how far splats reach beside it says little where
 /// a wall is narrow, as that of a screw's hole is. The right angles of machined parts are well within; at 90° parts
@@ -59,12 +55,17 @@ const FOLD: f64 = 0.5;
 
 /// Faces that turn from each other by more than this (cosine of 100°) meet in a sharp fold: one that splats miss is a
 /// line wherever it lies, since splats beside other lines are cut along it. With these the body of a robot takes 9 %
-/// fewer bytes, two scans 1 and 3 % fewer and one 1.5 % more. Knife edges may still pass for none: of faces next to back
-/// to back, seen about their mean normal, a steep parabola misses little.
+/// fewer bytes, two scans 1 and 3 % fewer and one 1.5 % more.
 const SHARP_FOLD: f64 = -0.17;
 
-/// Places along each side of a face that are looked at, less one.
-const LATTICE: u32 = 3;
+/// Faces that turn from each other by more than this (cosine of 120°) meet in a knife edge. A steep parabola, seen along
+/// their mean normal, misses the two by little; but no splat goes round the edge where both leaves of the surface are
+/// deep. At 100° two scans take 1 and 2 % more bytes.
+const KNIFE: f64 = -0.5;
+
+/// A leaf is deep that reaches farther than this from its edge, in bounds: a little more than splats may stand out by.
+/// At 1, the folded triangles of a scan are knife edges too, and it takes 2 % more bytes.
+const DEEP: f64 = 1.5;
 
 /// Edges of a chain that are looked at, evenly spread.
 const LOOKED_AT: usize = 12;
@@ -80,7 +81,7 @@ const COARSE: usize = 4;
 /// so `long`, model units, fewer sharp places are asked for.
 pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f64, marked: &mut [bool]) {
     let chains = chains(welded.positions.len(), edges, marked);
-    let patches = Patches::new(welded, edges, marked);
+    let judge = Judge { edges, patches: Patches::new(welded, edges, marked), worth };
     let needless: Vec<bool> = chains
         .par_iter()
         .map_init(
@@ -88,7 +89,7 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f6
             |visited, chain| {
                 let every = chain.edges.len().div_ceil(LOOKED_AT);
                 let looked_at = chain.edges.iter().skip(every / 2).step_by(every);
-                let sharp = looked_at.clone().filter(|&&edge| patches.is_sharp(edge, worth, visited)).count();
+                let sharp = looked_at.clone().filter(|&&edge| judge.is_sharp(edge, visited)).count();
                 let decisive = if chain.is_coarse(&welded.positions, long) { COARSE } else { FINE };
                 decisive * sharp <= looked_at.count()
             },
@@ -102,16 +103,10 @@ pub fn drop_needless(welded: &Welded, edges: &Edges, worth: &Worth<'_>, long: f6
 /// whether or not they are lines, and those that touch a line are to be cut along lines alone. Beyond the end of a line
 /// any fold is worth one: the surface is cut open there, and seen to be.
 pub fn mark_folds(welded: &Welded, edges: &Edges, worth: &Worth<'_>, marked: &mut [bool]) {
-    let patches = Patches::new(welded, edges, marked);
-    let fold = |edge| {
-        let (left, right) = edges.pair(edge)?;
-        let cosine = crease_cosine(edges, edge, &patches.normals);
-        patches.folds([left, right]).then(|| Fold {
-            misses: patches.fold_misses([left, right], worth),
-            is_sharp: cosine.is_some_and(|cosine| cosine < SHARP_FOLD),
-        })
-    };
-    let folds: Vec<Option<Fold>> = edges.edges.par_iter().map(fold).collect();
+    let judge = Judge { edges, patches: Patches::new(welded, edges, marked), worth };
+    let fold = |visited: &mut Marks, edge| judge.fold(edge, visited);
+    let folds: Vec<Option<Fold>> =
+        edges.edges.par_iter().map_init(|| Marks::new(welded.triangles.len()), fold).collect();
     for (mark, fold) in marked.iter_mut().zip(&folds) {
         *mark |= fold.is_some_and(|fold| fold.misses && fold.is_sharp);
     }
@@ -142,53 +137,26 @@ struct Fold {
     is_sharp: bool,
 }
 
-/// For each face, the edges along its sides.
-fn sides(edges: &Edges, faces: usize) -> Vec<[u32; 3]> {
-    let mut sides = vec![[NONE; 3]; faces];
-    for (index, edge) in (0_u32..).zip(&edges.edges) {
-        for half in edges.halves(edge) {
-            sides[half.face as usize][half.corner as usize] = index;
-        }
-    }
-    sides
-}
-
-/// Where patches are cut out of a mesh.
-struct Patches<'a> {
-    welded: &'a Welded,
+/// What judges the edges of a mesh.
+struct Judge<'a> {
     edges: &'a Edges,
-    sides: Vec<[u32; 3]>,
-    normals: Vec<DVec3>,
-    /// Which edges are feature edges so far.
-    marked: &'a [bool],
+    patches: Patches<'a>,
+    worth: &'a Worth<'a>,
 }
 
-/// What a patch is cut out for: where its middle is and how far it goes.
-#[derive(Clone, Copy)]
-struct Disc {
-    middle: DVec3,
-    radius: f64,
-    /// Whether it goes over feature edges.
-    over: bool,
-}
-
-impl<'a> Patches<'a> {
-    fn new(welded: &'a Welded, edges: &'a Edges, marked: &'a [bool]) -> Self {
-        let normals = face_normals(&welded.positions, &welded.triangles);
-        Self { welded, edges, sides: sides(edges, welded.triangles.len()), normals, marked }
-    }
-
+impl Judge<'_> {
     /// Whether splats that stop at an edge reach farther than one that goes over it.
-    fn is_sharp(&self, index: u32, worth: &Worth<'_>, visited: &mut Marks) -> bool {
+    fn is_sharp(&self, index: u32, visited: &mut Marks) -> bool {
+        let worth = self.worth;
         let edge = &self.edges.edges[index as usize];
         let Some((left, right)) = self.edges.pair(edge) else { return true };
-        let [a, b] = self.welded.places(edge.ends);
-        let middle = 0.5 * (a + b);
+        let middle = self.patches.middle(edge);
+        let fold = self.fold(edge, visited);
         let mut misfit = |radius: f64, over: bool, faces: &[u32]| {
-            let patch = self.patch(&Disc { middle, radius, over }, faces, visited);
+            let patch = self.patches.patch(&Disc { middle, radius, over }, faces, visited);
             patch.map_or(f64::INFINITY, |(points, normal)| (worth.misfit)(&points, normal))
         };
-        if self.fold_misses([left, right], worth) {
+        if fold.is_some_and(|fold| fold.misses) {
             // Nothing that is lower than the bound keeps splats from going over it.
             return misfit(OVER * worth.reach, true, &[left.face, right.face]) > worth.max_error;
         }
@@ -200,64 +168,30 @@ impl<'a> Patches<'a> {
                 over > (LEAST_MISS * worth.max_error).max(SHARPER * beside)
             })
         });
-        fitted
-            .take(DECISIVE)
-            .reduce(|deeper, next| deeper || next)
-            .unwrap_or_else(|| self.folds([left, right]))
+        fitted.take(DECISIVE).reduce(|deeper, next| deeper || next).unwrap_or(fold.is_some())
     }
 
-    /// Whether the surface folds between the faces of two sides.
-    fn folds(&self, sides: [Half; 2]) -> bool {
-        let [left, right] = sides.map(|side| self.normals[side.face as usize]);
-        left.dot(right) < FOLD
-    }
-
-    /// Whether it does, and a splat over both misses them by too much.
-    fn fold_misses(&self, sides: [Half; 2], worth: &Worth<'_>) -> bool {
-        let normal: DVec3 = sides.iter().map(|side| self.normals[side.face as usize]).sum();
-        let misses = || {
-            let places: Vec<DVec3> = sides.iter().flat_map(|side| self.lattice(side.face)).collect();
-            (worth.misfit)(&places, normal.normalize_or_zero()) > LEAST_MISS * worth.max_error
-        };
-        self.folds(sides) && (normal == DVec3::ZERO || misses())
-    }
-
-    /// Places within a disc on the faces that the surface joins to some, and the mean of those
-    /// faces' normals; `None` if it folds over.
-    fn patch(&self, disc: &Disc, from: &[u32], visited: &mut Marks) -> Option<(Vec<DVec3>, DVec3)> {
-        visited.clear();
-        let mut open: Vec<u32> = from.iter().copied().filter(|&face| visited.insert(face)).collect();
-        let (mut places, mut normals) = (Vec::new(), Vec::new());
-        while let Some(face) = open.pop() {
-            let before = places.len();
-            let near = |place: &DVec3| place.distance_squared(disc.middle) <= disc.radius * disc.radius;
-            places.extend(self.lattice(face).filter(near));
-            if places.len() == before {
-                continue;
-            }
-            normals.push(self.normals[face as usize]);
-            for side in self.sides[face as usize] {
-                if disc.over || !self.marked[side as usize] {
-                    let halves = self.edges.halves(&self.edges.edges[side as usize]);
-                    open.extend(halves.iter().map(|half| half.face).filter(|&other| visited.insert(other)));
-                }
-            }
-        }
-        let mean = normals.iter().sum::<DVec3>().normalize_or_zero();
-        let folds = normals.iter().any(|&normal| normal != DVec3::ZERO && normal.dot(mean) < FOLDED);
-        (!folds).then_some((places, mean))
-    }
-
-    /// Places spread over a face, its corners among them: a facet has no vertices inside, and may
-    /// be as large as the patch.
-    fn lattice(&self, face: u32) -> impl Iterator<Item = DVec3> {
-        let [a, b, c] = self.welded.places(self.welded.triangles[face as usize]);
-        (0..=LATTICE).flat_map(move |i| {
-            (0..=LATTICE - i).map(move |j| {
-                let [s, t] = [i, j].map(|n| f64::from(n) / f64::from(LATTICE));
-                a + s * (b - a) + t * (c - a)
-            })
+    /// The fold at an edge, if it is one.
+    fn fold(&self, edge: &Edge, visited: &mut Marks) -> Option<Fold> {
+        let (left, right) = self.edges.pair(edge)?;
+        let cosine = self.patches.turned(left.face, right.face);
+        let is_knife = cosine < KNIFE && [left, right].iter().all(|&side| self.is_deep(side, visited));
+        (cosine < FOLD).then(|| Fold {
+            misses: is_knife || self.misses([left.face, right.face]),
+            is_sharp: cosine < SHARP_FOLD,
         })
+    }
+
+    /// Whether the leaf of the surface on one side of an edge is deep.
+    fn is_deep(&self, side: Half, visited: &mut Marks) -> bool {
+        self.patches.reaches(side, DEEP * self.worth.max_error, visited)
+    }
+
+    /// Whether a splat over two faces misses them by too much.
+    fn misses(&self, faces: [u32; 2]) -> bool {
+        let places: Vec<DVec3> = faces.iter().flat_map(|&face| self.patches.lattice(face)).collect();
+        let normal = self.patches.mean_normal(faces);
+        normal == DVec3::ZERO || (self.worth.misfit)(&places, normal) > LEAST_MISS * self.worth.max_error
     }
 }
 
@@ -391,16 +325,11 @@ mod tests {
     /// marked, and before and after which all is flat.
     fn carried_on(slope: f32, led: bool, misfit: &Misfit<'_>) -> Vec<u32> {
         let led = led.then_some(FIRST - 1);
-        carried_between([FIRST, LAST], slope, led, misfit)
+        carried_between([FIRST, LAST], slope, led, &Worth { reach: 6.0, max_error: 0.2, misfit })
     }
 
     /// The same of a ridge between two steps, one of them marked before.
-    fn carried_between(
-        [first, last]: [u32; 2],
-        slope: f32,
-        led: Option<u32>,
-        misfit: &Misfit<'_>,
-    ) -> Vec<u32> {
+    fn carried_between([first, last]: [u32; 2], slope: f32, led: Option<u32>, worth: &Worth<'_>) -> Vec<u32> {
         // Between two ditches in level ground, so that nothing folds where that ends.
         let depth = |x: f32| slope * x.abs().min(4.0 - x.abs()).max(0.0);
         let roof: Vec<(f32, f32)> = (-10..=10_i8).map(f32::from).map(|x| (x, -depth(x))).collect();
@@ -413,7 +342,7 @@ mod tests {
         let ridge = |step: u32| edges.find(step * across + 10, (step + 1) * across + 10).unwrap();
         let mut marked = vec![false; edges.edges.len()];
         led.into_iter().for_each(|step| marked[ridge(step)] = true);
-        mark_folds(&welded, &edges, &Worth { reach: 6.0, max_error: 0.2, misfit }, &mut marked);
+        mark_folds(&welded, &edges, worth, &mut marked);
         (0..LENGTH).filter(|&step| marked[ridge(step)]).collect()
     }
 
@@ -425,7 +354,8 @@ mod tests {
     fn folds_lead_on_from_lines_and_borders_and_from_nowhere_else() {
         assert_eq!(carried_on(1.0, true, &plane), (FIRST - 1..LAST).collect::<Vec<_>>());
         assert!(carried_on(1.0, false, &plane).is_empty(), "it leaves no line");
-        assert_eq!(carried_between([0, LAST], 1.0, None, &plane), (0..LAST).collect::<Vec<_>>());
+        let worth = Worth { reach: 6.0, max_error: 0.2, misfit: &plane };
+        assert_eq!(carried_between([0, LAST], 1.0, None, &worth), (0..LAST).collect::<Vec<_>>());
     }
 
     #[test]
@@ -438,10 +368,26 @@ mod tests {
     }
 
     #[test]
+    fn a_knife_edge_of_deep_leaves_is_a_line_though_no_splat_misses_its_faces() {
+        let nothing = |_: &[DVec3], _: DVec3| 0.0;
+        // On either side go down two steps of one unit across, each some 2.8 long.
+        let marked = |slope: f32, max_error: f64| {
+            let worth = Worth { reach: 6.0, max_error, misfit: &nothing };
+            carried_between([FIRST, LAST], slope, None, &worth)
+        };
+        // Where the ridge rises and falls it is as sharp.
+        let whole: Vec<u32> = (FIRST - 1..=LAST).collect();
+        assert_eq!(marked(2.6, 0.2), whole, "138 degrees");
+        assert_eq!(marked(2.6, 3.5), whole, "over both steps of a leaf");
+        assert!(marked(2.6, 3.8).is_empty(), "leaves less than one and a half bounds deep");
+        assert!(marked(1.6, 0.2).is_empty(), "116 degrees");
+    }
+
+    #[test]
     fn a_line_does_not_end_on_a_fold() {
         let nothing = |_: &[DVec3], _: DVec3| 0.0;
-        assert_eq!(carried_on(1.5, true, &nothing), (FIRST - 1..LAST).collect::<Vec<_>>());
-        assert!(carried_on(1.5, false, &nothing).is_empty(), "it leaves no line");
+        assert_eq!(carried_on(1.4, true, &nothing), (FIRST - 1..LAST).collect::<Vec<_>>());
+        assert!(carried_on(1.4, false, &nothing).is_empty(), "it leaves no line");
         assert_eq!(carried_on(0.5, true, &nothing), [FIRST - 1], "53 degrees are no fold");
     }
 
