@@ -192,8 +192,9 @@ pub fn bake(
         cover.lower_bound()
     });
     clock.stage(progress, "clip");
-    if options.clips != Clips::Partners {
-        let saving = |splats: &mut [Splat], trial: &mut dyn Trial| saving(splats, max_error, trial);
+    let saving = |splats: &mut [Splat], trial: &mut dyn Trial| saving(splats, max_error, trial);
+    let is_along_lines = options.clips != Clips::Partners;
+    if is_along_lines {
         cover.save(&grower, &regions, max_error, &saving)?;
     }
     let asset = |splats: Vec<Splat>| Asset {
@@ -207,8 +208,8 @@ pub fn bake(
     };
     clock.stage(progress, "seal");
     cover.store(&grower);
-    for _ in 0..mendings.max(1) {
-        let followed = if options.clips == Clips::Partners { 0 } else { cover.follow(&grower, &regions) };
+    for round in 0..mendings.max(1) {
+        let followed = if is_along_lines { cover.follow(&grower, &regions) } else { 0 };
         let Faults { open, beside } = looking.faults(&asset(cover.splats()))?;
         let (taken, added) =
             (cover.withdraw(&grower, &regions, &beside), cover.seal(&grower, &regions, &open));
@@ -217,6 +218,10 @@ pub fn bake(
         choice.following += followed;
         if followed + taken + added == 0 {
             break;
+        }
+        // Those added leave steps, and are told anew, as the first were: what this opens is seen in the next rounds.
+        if round == 0 && added > 0 && is_along_lines {
+            cover.save(&grower, &regions, max_error, &saving)?;
         }
     }
     let edge_cases = cover.edge_cases(&grower, &regions);
