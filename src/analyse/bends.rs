@@ -1,6 +1,6 @@
 //! How much the faces of a mesh bend into their neighbours.
 
-use super::edges::{Edge, Edges, face_normals};
+use super::edges::{Edges, face_normals};
 use super::weld::Welded;
 
 /// For each triangle its greatest curvature towards a neighbour, in 1 / model units: the angle between
@@ -14,7 +14,7 @@ pub fn bends(welded: &Welded, marked: &[bool]) -> Vec<f64> {
         let Some((a, b)) = edges.pair(edge) else { continue };
         let [normal, other] = [a, b].map(|half| normals[half.face as usize]);
         let angle = libm::atan2(normal.cross(other).length(), normal.dot(other));
-        let height = height(welded, a.face, edge).min(height(welded, b.face, edge));
+        let height = welded.height(a.face, edge.ends).min(welded.height(b.face, edge.ends));
         // Over a face without area there is no telling.
         let bend = if angle > 0.0 { angle / height } else { 0.0 };
         for half in [a, b] {
@@ -23,14 +23,6 @@ pub fn bends(welded: &Welded, marked: &[bool]) -> Vec<f64> {
         }
     }
     bends
-}
-
-/// How far a triangle goes on beside one of its edges.
-fn height(welded: &Welded, face: u32, edge: &Edge) -> f64 {
-    let [from, to] = welded.places(edge.ends);
-    let along = (to - from).normalize_or_zero();
-    let corners = welded.places(welded.triangles[face as usize]).into_iter();
-    corners.map(|corner| (corner - from).cross(along).length()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

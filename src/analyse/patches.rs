@@ -15,7 +15,7 @@ const LATTICE: u32 = 3;
 /// of one splat.
 const FOLDED: f64 = 0.26;
 
-/// A leaf goes on over faces turned from its first by less than this (cosine of 60°).
+/// A leaf goes on over faces turned from its first by less than this (cosine of 60°): beyond, the surface folds.
 const LEAF: f64 = 0.5;
 
 /// For each face, the edges along its sides.
@@ -108,7 +108,7 @@ impl<'a> Patches<'a> {
         faces.map(|face| self.normals[face as usize]).iter().sum::<DVec3>().normalize_or_zero()
     }
 
-    /// The cosine of the angle by which two faces turn from each other.
+    /// The cosine of the angle by which two faces turn from each other; 0 where one has no area.
     #[must_use]
     pub fn turned(&self, face: u32, other: u32) -> f64 {
         self.normals[face as usize].dot(self.normals[other as usize])
@@ -118,8 +118,8 @@ impl<'a> Patches<'a> {
     /// near the middle of that.
     pub fn reaches(&self, side: Half, far: f64, visited: &mut Marks) -> bool {
         let edge = self.sides[side.face as usize][side.corner as usize];
-        let [a, b] = self.welded.places(self.edges.edges[edge as usize].ends);
-        let (middle, along) = (0.5 * (a + b), (b - a).normalize_or_zero());
+        let along = &self.edges.edges[edge as usize];
+        let middle = self.middle(along);
         let near = |side: &u32| {
             let [p, q] = self.welded.places(self.edges.edges[*side as usize].ends);
             nearest_on(p, q, middle).distance(middle) <= far
@@ -128,8 +128,7 @@ impl<'a> Patches<'a> {
         visited.insert(side.face);
         let mut open = vec![side.face];
         while let Some(face) = open.pop() {
-            let corners = self.welded.places(self.welded.triangles[face as usize]);
-            if corners.iter().any(|&corner| along.cross(corner - a).length() > far) {
+            if self.welded.height(face, along.ends) > far {
                 return true;
             }
             for over in self.sides[face as usize].into_iter().filter(|&over| over != edge).filter(near) {

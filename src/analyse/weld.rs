@@ -24,6 +24,15 @@ impl Welded {
     pub fn places<const N: usize>(&self, vertices: [u32; N]) -> [DVec3; N] {
         vertices.map(|v| self.positions[v as usize].as_dvec3())
     }
+
+    /// How far a triangle goes on beside the straight line through two vertices, model units.
+    #[must_use]
+    pub fn height(&self, face: u32, line: [u32; 2]) -> f64 {
+        let [from, to] = self.places(line);
+        let along = (to - from).normalize_or_zero();
+        let corners = self.places(self.triangles[face as usize]).into_iter();
+        corners.map(|corner| (corner - from).cross(along).length()).fold(0.0, f64::max)
+    }
 }
 
 /// Welds a mesh; degenerate and repeated triangles and unused vertices disappear, and sheets that lie back
