@@ -1,6 +1,7 @@
 //! The error bound that a bake keeps to.
 
-use super::diagonal;
+use glam::Vec3;
+
 use super::noise::noise;
 use super::options::{Edges, Holes, MaxError, Options};
 use super::quiet::is_noisy;
@@ -88,6 +89,15 @@ fn is_rough(input: &Input, bound: f64) -> bool {
 fn no_looser(bound: f64) -> f64 {
     let nearest = bound as f32;
     f64::from(if f64::from(nearest) > bound { nearest.next_down() } else { nearest })
+}
+
+/// Length of the bounding box's diagonal.
+pub(super) fn diagonal(positions: &[Vec3]) -> f64 {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for &p in positions {
+        (low, high) = (low.min(p), high.max(p));
+    }
+    (high.as_dvec3() - low.as_dvec3()).length()
 }
 
 #[cfg(test)]

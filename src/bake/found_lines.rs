@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::lines::{feature_lines, input_lines};
+use super::model_error;
 use super::noise::input_noise;
 use super::options::{Edges, Options};
-use super::{feature_lines, input_lines, model_error};
 use crate::error::Result;
 use crate::ingest::Input;
 use crate::ingest::chain::chain;

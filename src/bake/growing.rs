@@ -1,6 +1,7 @@
 //! How splats grow, over whatever surface; what is begun over a mesh before its pieces are small enough.
 
-use super::{MOST_PIECES, Progress};
+use super::Progress;
+use super::analysed::MOST_PIECES;
 use crate::analyse::mesh_surface::Marked;
 use crate::analyse::refine::{Fineness, Side};
 use crate::analyse::surface::Surface;

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use super::lines::{cloud_lines, given_lines};
 use super::options::{Edges, Options};
-use super::{cloud_lines, given_lines};
 use crate::analyse::cloud_surface::cloud_discs;
 use crate::error::Result;
 use crate::ingest::Input;

@@ -38,10 +38,6 @@ impl Looking for Blind {
     }
 }
 
-/// Faults are looked for and mended at most so many times: what mends one is cut a little otherwise once
-/// it is stored, and may show elsewhere. Five do on the models measured, but for what no splats mend.
-pub(super) const MENDINGS: usize = 6;
-
 /// Pixels that points of a cloud stand for around them, between which it is looked at.
 ///
 /// Of denser ones, 2 million points of fandisk and 4 million of a head at 0.1 %, no pixel is missing or extra, and 8 and
@@ -68,8 +64,10 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::bake::analysed::analyse;
+    use crate::bake::bound::diagonal;
     use crate::bake::scattered::sphere;
-    use crate::bake::{analyse, diagonal, meant, model_error};
+    use crate::bake::{meant, model_error};
     use crate::ingest::Input;
 
     #[test]

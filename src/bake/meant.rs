@@ -4,10 +4,12 @@
 
 use std::borrow::Cow;
 
+use super::analysed::{MOST_PIECES, piece_length};
+use super::bound::diagonal;
+use super::lines::{cloud_lines, features, given_lines, input_lines};
 use super::noise::noise;
 use super::options::{Edges, Meaning, Options};
 use super::quiet::{Quieted, is_loud, is_noisy, least_bound, quieted};
-use super::{MOST_PIECES, cloud_lines, diagonal, features, given_lines, input_lines, piece_length};
 use crate::analyse::mesh_surface::Found;
 use crate::analyse::sided::Sided;
 use crate::analyse::smooth::Fineness;
