@@ -122,7 +122,7 @@ pub fn bake(
     check_noise(&meant, options.denoise, max_error)?;
     let Analysed { mut surface, marked, features, left_out, discs, open_places, sparse } =
         analyse(&meant, options, max_error, diagonal)?;
-    let mendings = if discs.is_some() { MENDINGS } else { 0 };
+    let mendings = if discs.is_some() { MENDINGS } else { 1 };
     if let Some(discs) = discs {
         clock.stage(progress, "look");
         looking.at(&Kept::of(&meant.input, &left_out, discs))?;

@@ -68,8 +68,8 @@ const KNIFE: f64 = -0.5;
 const DEEP: f64 = 1.5;
 
 /// A line does not end on an edge, as straight on, whose faces turn from each other by more than this (cosine of the
-/// [default angle](crate::tolerance::DEFAULT_EDGE_ANGLE), as sharp as those that lines begin with). At 60° the jaw of a skeleton is cut beside the end of one; files of scans
-/// and bones are 1 % larger to 1.4 % smaller.
+/// [default angle](crate::tolerance::DEFAULT_EDGE_ANGLE), as sharp as those that lines begin with). At 60° the jaw of a
+/// skeleton is cut beside the end of one; files of scans and bones are 1 % larger to 1.4 % smaller.
 const ONWARD: f64 = 0.766;
 
 /// Edges of a chain that are looked at, evenly spread.

@@ -45,7 +45,7 @@ impl Mending<'_> {
         looking: &mut dyn Looking,
     ) -> Result<()> {
         let (grower, regions) = (self.grower, self.regions);
-        for round in 0..times.max(1) {
+        for round in 0..times {
             let followed = if self.saving.is_some() { cover.follow(grower, regions) } else { 0 };
             let Faults { open, beside } = looking.faults(&(self.asset)(cover.splats()))?;
             let taken = cover.withdraw(grower, regions, &beside);
