@@ -59,6 +59,11 @@ const WEAK_SHARE: f64 = 0.75;
 /// two.
 const LENGTHS: [f64; 3] = [0.5, 3.0, 5.0];
 
+/// The same where noise calls for no more points than are looked at without it: chance makes few lines there. Up to
+/// noise of 0.2 spacings those of nine parts and scans lie on creases as before (95 to 100 % of them) and take in 1 to
+/// 14 % more; at 0.5, in larger neighbourhoods, up to half of what shorter ones add would lie on none.
+const CLEAR_LENGTHS: [f64; 3] = [0.2, 1.2, 2.0];
+
 /// What lies between ends is at most this long, in sizes: longer creases have samples of their own.
 const LONGEST: f64 = 6.0;
 
@@ -90,7 +95,8 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     let chains = chains(points, all.into_par_iter(), WEAK_SHARE * sought.degrees)?;
     let mut lines: Vec<Line> = chains.iter().filter_map(|chain| Line::of(chain, sharp)).collect();
     let joined = corners::join(&mut lines, &|place| points.foot(place).is_some())?;
-    let mut lines = worth_it(lines, &joined, sought.shortest);
+    let lengths = if points.are_clear() { CLEAR_LENGTHS } else { LENGTHS };
+    let mut lines = worth_it(lines, &joined, sought.shortest, lengths);
     lines.extend(arms::between_ends(&lines, points, sharp)?);
     Ok(lines.into_iter().map(Line::whole).collect())
 }
@@ -131,7 +137,7 @@ fn chains(
 }
 
 /// The lines that are long enough for what they meet, those that go on over gaps as one.
-fn worth_it(lines: Vec<Line>, joined: &Joined, shortest: f64) -> Vec<Line> {
+fn worth_it(lines: Vec<Line>, joined: &Joined, shortest: f64, lengths: [f64; 3]) -> Vec<Line> {
     let mut sets = Sets::new(lines.len());
     let mut ends: Vec<([u64; 3], u32)> = Vec::new();
     for (n, line) in (0_u32..).zip(&lines) {
@@ -150,7 +156,7 @@ fn worth_it(lines: Vec<Line>, joined: &Joined, shortest: f64) -> Vec<Line> {
     }
     let mut is_long = |n: usize, line: &Line| {
         let (length, loose) = as_one[joined.run[n] as usize];
-        together[sets.root(n as u32) as usize] >= shortest && length >= LENGTHS[loose] * line.size
+        together[sets.root(n as u32) as usize] >= shortest && length >= lengths[loose] * line.size
     };
     let keep: Vec<bool> = lines.iter().enumerate().map(|(n, line)| is_long(n, line)).collect();
     lines.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(line, _)| line).collect()

@@ -121,6 +121,11 @@ pub struct Points<'a> {
 }
 
 impl Points<'_> {
+    /// Whether noise calls for no more points than are looked at without it.
+    pub(super) fn are_clear(&self) -> bool {
+        self.count(self.usual_spacing()) == FEWEST as usize
+    }
+
     /// Samples of all creases whose turn has a lesser cosine than `turn`, beside some of the points and in their
     /// order.
     pub(super) fn samples(&self, beside: impl IndexedParallelIterator<Item = u32>, turn: f64) -> Vec<Sample> {

@@ -217,6 +217,27 @@ fn gaps_of_lines_are_closed_where_points_show_the_crease_there() {
     }
 }
 
+/// Points of a square with a crest of 62° along the x axis, sharp for 0.16 and ever rounder on either side; they lie
+/// 0.018 apart and scatter by so much.
+fn crest(scatter: f64) -> Vec<Vec3> {
+    let place = |n: u64| {
+        let (x, y) = (0.7 * random(2 * n), 0.7 * random(2 * n + 1));
+        DVec3::new(x, y, -0.6 * y.hypot(4.0 * (x.abs() - 0.08).max(0.0).powi(2)))
+    };
+    (0..6000).map(|n| strayed(place(n), scatter, n)).collect()
+}
+
+#[test]
+fn short_creases_that_end_in_the_midst_are_found_where_chance_makes_none() {
+    let axis = [vec![0.24 * DVec3::X, -0.24 * DVec3::X]];
+    for scatter in [0.0, 0.0018] {
+        let found = creases(crest(scatter), scatter);
+        assert_eq!(found.len(), 1, "{scatter}: {found:?}");
+        assert!(apart(&found, &axis) < 0.009, "{scatter}: {}", apart(&found, &axis));
+    }
+    assert_eq!(creases(crest(0.009), 0.009), Vec::<Vec<DVec3>>::new());
+}
+
 #[test]
 fn smooth_surfaces_have_no_creases() {
     assert_eq!(creases(sphere(4000, 0.0), 0.0), Vec::<Vec<DVec3>>::new());
@@ -301,6 +322,8 @@ fn lines_that_go_on_over_gaps_are_long_as_one() {
     };
     let lines = || vec![piece(0.0), piece(2.5), piece(5.0)];
     let met = vec![[false, true], [true, true], [true, false]];
-    let kept = |run: [u32; 3]| worth_it(lines(), &Joined { met: met.clone(), run: run.to_vec() }, 0.0).len();
+    let kept = |run: [u32; 3]| {
+        worth_it(lines(), &Joined { met: met.clone(), run: run.to_vec() }, 0.0, LENGTHS).len()
+    };
     assert_eq!([kept([0, 0, 0]), kept([0, 1, 2])], [3, 1]);
 }
