@@ -217,12 +217,12 @@ fn gaps_of_lines_are_closed_where_points_show_the_crease_there() {
     }
 }
 
-/// Points of a square with a crest of 62° along the x axis, sharp for 0.16 and ever rounder on either side; they lie
-/// 0.018 apart and scatter by so much.
-fn crest(scatter: f64) -> Vec<Vec3> {
+/// Points of a square with a crest of 62° along the x axis, sharp up to `half` from its middle and ever rounder beyond;
+/// they lie 0.018 apart and scatter by so much.
+fn crest(half: f64, scatter: f64) -> Vec<Vec3> {
     let place = |n: u64| {
         let (x, y) = (0.7 * random(2 * n), 0.7 * random(2 * n + 1));
-        DVec3::new(x, y, -0.6 * y.hypot(4.0 * (x.abs() - 0.08).max(0.0).powi(2)))
+        DVec3::new(x, y, -0.6 * y.hypot(4.0 * (x.abs() - half).max(0.0).powi(2)))
     };
     (0..6000).map(|n| strayed(place(n), scatter, n)).collect()
 }
@@ -231,11 +231,12 @@ fn crest(scatter: f64) -> Vec<Vec3> {
 fn short_creases_that_end_in_the_midst_are_found_where_chance_makes_none() {
     let axis = [vec![0.24 * DVec3::X, -0.24 * DVec3::X]];
     for scatter in [0.0, 0.0018] {
-        let found = creases(crest(scatter), scatter);
+        let found = creases(crest(0.08, scatter), scatter);
         assert_eq!(found.len(), 1, "{scatter}: {found:?}");
         assert!(apart(&found, &axis) < 0.009, "{scatter}: {}", apart(&found, &axis));
     }
-    assert_eq!(creases(crest(0.009), 0.009), Vec::<Vec<DVec3>>::new());
+    // As long beside the neighbourhoods that more noise calls for.
+    assert_eq!(creases(crest(0.2, 0.009), 0.009), Vec::<Vec<DVec3>>::new());
 }
 
 #[test]
