@@ -30,7 +30,12 @@ pub(super) const APART: f64 = 0.32;
 
 /// Whether two samples may be of one crease, by their directions.
 pub(super) fn alike(a: &Sample, b: &Sample) -> bool {
-    a.along.dot(b.along).abs() >= ALIGNED && a.between.dot(b.between) >= FACING
+    are_aligned(a, b) && a.between.dot(b.between) >= FACING
+}
+
+/// Whether two samples run one way.
+fn are_aligned(a: &Sample, b: &Sample) -> bool {
+    a.along.dot(b.along).abs() >= ALIGNED
 }
 
 /// A search over the places of samples.
@@ -42,7 +47,8 @@ pub(super) fn search(samples: &[Sample]) -> Result<Search> {
 ///
 /// # Errors
 /// As [`Search::new`].
-pub(super) fn ridge(mut samples: Vec<Sample>) -> Result<Vec<Sample>> {
+pub(super) fn ridge(samples: Vec<Sample>) -> Result<Vec<Sample>> {
+    let mut samples = beyond_doubt(samples)?;
     for round in 0..ROUNDS {
         if samples.is_empty() {
             return Ok(samples);
@@ -52,6 +58,22 @@ pub(super) fn ridge(mut samples: Vec<Sample>) -> Result<Vec<Sample>> {
         samples = samples.par_iter().filter_map(drawn).collect();
     }
     if samples.is_empty() { Ok(samples) } else { thinned(&samples) }
+}
+
+/// All but the doubtful ones within the neighbourhoods of which a sample beyond doubt runs another way: at a corner.
+fn beyond_doubt(samples: Vec<Sample>) -> Result<Vec<Sample>> {
+    let sure: Vec<Sample> = samples.iter().filter(|sample| !sample.doubtful).copied().collect();
+    if sure.is_empty() {
+        return Ok(samples);
+    }
+    let search = search(&sure)?;
+    let at_corner = |sample: &Sample| {
+        let around = search.around(sample.place.as_vec3(), LOOKED_AT).into_iter().map(|n| &sure[n as usize]);
+        around
+            .take_while(|other| other.place.distance(sample.place) < sample.size)
+            .any(|other| !are_aligned(sample, other))
+    };
+    Ok(samples.into_par_iter().filter(|sample| !(sample.doubtful && at_corner(sample))).collect())
 }
 
 /// A sample moved across its line to the mean of those like it; none if there are few.
@@ -86,6 +108,7 @@ fn drawn(sample: &Sample, samples: &[Sample], search: &Search, few_go: bool) -> 
         turn: turn / weights,
         rounded: rounded / weights,
         left: left / weights,
+        doubtful: sample.doubtful,
         size: sample.size,
     })
 }
@@ -106,4 +129,30 @@ fn thinned(samples: &[Sample]) -> Result<Vec<Sample>> {
         covered[n] = true;
     }
     Ok(taken)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn doubtful_samples_go_where_one_beyond_doubt_runs_another_way() {
+        let sure = Sample {
+            place: DVec3::ZERO,
+            along: DVec3::X,
+            between: DVec3::Z,
+            turn: 0.0,
+            rounded: 0.0,
+            left: 0.0,
+            doubtful: false,
+            size: 1.0,
+        };
+        let doubtful = |along: DVec3, x: f64| Sample { place: x * DVec3::X, along, doubtful: true, ..sure };
+        let (on, across, beyond) =
+            (doubtful(DVec3::X, 0.5), doubtful(DVec3::Y, 0.5), doubtful(DVec3::Y, 1.5));
+        assert_eq!(beyond_doubt(vec![across, sure, on, beyond]).unwrap(), [sure, on, beyond]);
+        assert_eq!(beyond_doubt(vec![across, on]).unwrap(), [across, on]);
+    }
 }

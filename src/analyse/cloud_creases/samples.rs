@@ -26,6 +26,9 @@ pub(super) struct Sample {
     pub(super) rounded: f64,
     /// As [`Hinge::scatter`], beyond what the noise may be: squares of the spacing.
     pub(super) left: f64,
+    /// Whether its nearest points alone show it, and leave something to explain: near a corner they may lean on the
+    /// third face.
+    pub(super) doubtful: bool,
     /// Radius of the whole neighbourhood looked at, though its nearest points alone may show it.
     pub(super) size: f64,
 }
@@ -50,9 +53,12 @@ const FEWEST: f64 = 32.0;
 /// the other side of a wall of three spacings.
 const CLOSE: usize = 20;
 
-/// A hinge misses so few by less than this share of the spacing, root mean square, beyond what noise does: one that
-/// leaves anything to explain leans on points of a third face.
-const UNEXPLAINED: f64 = 0.01;
+/// A hinge misses so few by less than this share of the spacing, root mean square, beyond what noise does: as curved
+/// sides may be missed. One that leaves more to explain leans on points of a third face.
+const UNEXPLAINED: f64 = 0.1;
+
+/// A hinge that misses points by less than this share of the spacing, beyond what noise does, explains them.
+const NOTHING: f64 = 0.01;
 
 /// The most, so that the work stays bounded.
 const MOST: f64 = 160.0;
@@ -210,8 +216,12 @@ impl Points<'_> {
         let many = points.len() > FEWEST as usize;
         let shown = |points: &[DVec3]| shown(points, noise, many, turn);
         let left = |hinge: &Hinge| hinge.scatter - LOOSE_NOISE * noise * noise;
-        let close = || shown(points.get(..CLOSE).filter(|_| !many)?).filter(|hinge| is_nothing(left(hinge)));
-        let hinge = shown(&points).or_else(close)?;
+        let close = || {
+            shown(points.get(..CLOSE).filter(|_| !many)?)
+                .filter(|hinge| left(hinge) <= UNEXPLAINED * UNEXPLAINED)
+        };
+        let all = shown(&points);
+        let hinge = all.or_else(close)?;
         Some(Sample {
             place: here + spacing * hinge.foot,
             along: hinge.along,
@@ -219,6 +229,7 @@ impl Points<'_> {
             turn: hinge.turn(),
             rounded: if many { hinge.rounded(&points, radius, cutoff(noise)) } else { 0.0 },
             left: left(&hinge),
+            doubtful: all.is_none() && !is_nothing(left(&hinge)),
             size: radius * spacing,
         })
     }
@@ -232,7 +243,7 @@ pub(super) fn are_exact(samples: &[Sample]) -> bool {
 
 /// Whether a mean square, of spacings, is none to speak of.
 fn is_nothing(left: f64) -> bool {
-    left <= UNEXPLAINED * UNEXPLAINED
+    left <= NOTHING * NOTHING
 }
 
 /// The hinge that points show.

@@ -123,6 +123,11 @@ fn apart(lines: &[Vec<DVec3>], others: &[Vec<DVec3>]) -> f64 {
     distances(lines, others).into_iter().fold(0.0, f64::max)
 }
 
+/// The length of some lines together.
+fn length(lines: &[Vec<DVec3>]) -> f64 {
+    lines.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum()
+}
+
 #[test]
 fn the_edges_of_a_cube_are_found_and_nothing_else() {
     for (scatter, off) in [(0.0, 0.3), (0.2, 1.0)] {
@@ -141,8 +146,7 @@ fn a_cylinder_has_two_circles() {
         let off = (place.truncate().length() - 0.4).hypot(place.z.abs() - 0.4);
         assert!(off < 0.007, "{place}: {off}");
     }
-    let length: f64 =
-        found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
+    let length = length(&found);
     assert!((length / (1.6 * PI) - 1.0).abs() < 0.05, "{length}");
 }
 
@@ -155,8 +159,7 @@ fn the_rims_of_a_hole_as_narrow_as_seven_spacings_are_found_whole() {
             let off = (place.truncate().length() - radius).hypot((place.z + 0.1).abs() - 0.1);
             assert!(off < 0.007, "{radius}: {place} is {off} off, and a spacing 0.021");
         }
-        let length: f64 =
-            found.iter().flat_map(|line| line.windows(2)).map(|side| side[0].distance(side[1])).sum();
+        let length = length(&found);
         assert!((length / (4.0 * PI * radius) - 1.0).abs() < 0.03, "{radius}: {length}");
     }
 }
@@ -190,6 +193,34 @@ fn the_edges_of_a_thin_wall_are_found() {
     assert!(apart(&edges, &found) < 0.015, "{}", apart(&edges, &found));
     let off = |place: &DVec3| (place.y.abs() - 0.03).hypot(place.z);
     assert!(found.iter().flatten().all(|place| off(place) < 0.005));
+}
+
+/// Points of a disc of this radius and height about its middle, strewn; they lie about 1 apart.
+fn disc(radius: f64, height: f64) -> Vec<Vec3> {
+    let area = 2.0 * PI * radius * (radius + height);
+    let place = |n: u64| {
+        let (sin, cos) = libm::sincos(PI * random(3 * n));
+        let (side, up) = (radius * DVec3::new(cos, sin, 0.0), 0.5 * height * DVec3::Z);
+        let (face, way) = (random(3 * n + 1) * (radius + height), random(3 * n + 2));
+        match face.abs() < height {
+            true => side + way * up,
+            false => libm::sqrt(0.5 + 0.5 * way) * side + up * face.signum(),
+        }
+    };
+    (0..area as u64).map(|n| place(n).as_vec3()).collect()
+}
+
+#[test]
+fn the_rims_of_a_thin_disc_are_found_whole() {
+    for radius in [15.0, 20.0, 30.0] {
+        let found = creases(disc(radius, 3.0), 0.0);
+        for place in found.iter().flatten() {
+            let off = (place.truncate().length() - radius).hypot(place.z.abs() - 1.5);
+            assert!(off < 0.5, "{radius}: {place} is {off} off");
+        }
+        let length = length(&found);
+        assert!((length / (4.0 * PI * radius) - 1.0).abs() < 0.03, "{radius}: {length}");
+    }
 }
 
 #[test]
