@@ -60,7 +60,8 @@ pub(super) fn ridge(samples: Vec<Sample>) -> Result<Vec<Sample>> {
     if samples.is_empty() { Ok(samples) } else { thinned(&samples) }
 }
 
-/// All but the doubtful ones within the neighbourhoods of which a sample beyond doubt runs another way: at a corner.
+/// All but the doubtful ones within the neighbourhoods of which a sample beyond doubt runs another way: at a corner,
+/// where they would draw others off the lines (without this, fandisk takes 9 % more bytes).
 fn beyond_doubt(samples: Vec<Sample>) -> Result<Vec<Sample>> {
     let sure: Vec<Sample> = samples.iter().filter(|sample| !sample.doubtful).copied().collect();
     if sure.is_empty() {

@@ -54,7 +54,8 @@ const FEWEST: f64 = 32.0;
 const CLOSE: usize = 20;
 
 /// A hinge misses so few by less than this share of the spacing, root mean square, beyond what noise does: as curved
-/// sides may be missed. One that leaves more to explain leans on points of a third face.
+/// sides may be missed. One that leaves more to explain leans on points of a third face: without this bound, files of
+/// abc-00000049 and of a rack with many edges are 3 to 5 % larger.
 const UNEXPLAINED: f64 = 0.1;
 
 /// A hinge that misses points by less than this share of the spacing, beyond what noise does, explains them.
