@@ -9,6 +9,7 @@ use super::region::Region;
 use super::scout::Begun;
 use super::settle::{Candidate, settle};
 use crate::analyse::canonical::mix;
+use crate::analyse::surface::Surface;
 
 /// Seeds grown side by side before their cores are marked. Batches are of the same size
 /// whatever the threads, so that the candidates are the same too.
@@ -34,7 +35,8 @@ impl Regions {
     }
 }
 
-/// Share of a candidate's radii inside which no further seed is planted.
+/// Share of a candidate's radii inside which no further seed is planted, around its centre and around its own seed,
+/// from which it may have grown to one side: others there grow to the same.
 #[must_use]
 pub fn core_share(effort: u8) -> f64 {
     1.0 - 0.08 * f64::from(effort.clamp(1, 9))
@@ -90,10 +92,14 @@ pub fn candidates(
     effort: u8,
     mut advance: impl FnMut(usize),
 ) -> Vec<Candidate> {
-    let with_core = |candidate: Candidate| (core(grower, &candidate, core_share(effort)), candidate);
+    let with_core = |candidate: Candidate, seed: u32| {
+        let core = core(grower.surface, &candidate, seed, core_share(effort));
+        (core, candidate)
+    };
     let end = |(domain, piece): &(Domain, u32)| {
         let seeds = grower.surface.pieces[*piece as usize];
-        regions.with(|region| settle(grower, domain.clone(), &seeds, *piece, region)).map(with_core)
+        let found = regions.with(|region| settle(grower, domain.clone(), &seeds, *piece, region))?;
+        Some(with_core(found, *piece))
     };
     let mut seeds = Seeds::over(grower.surface.pieces.len());
     let mut found = Vec::new();
@@ -105,18 +111,43 @@ pub fn candidates(
     };
     take(&mut seeds, begun.domains.par_iter().map(end).collect());
     while let Some(batch) = seeds.next_batch() {
-        let grow = |&piece: &u32| regions.with(|region| grower.grow(piece, region)).map(with_core);
+        let grow = |&piece: &u32| {
+            let found = regions.with(|region| grower.grow(piece, region))?;
+            Some(with_core(found, piece))
+        };
         take(&mut seeds, batch.par_iter().map(grow).collect());
         advance(seeds.passed());
     }
     found
 }
 
-/// The pieces of a candidate whose middles lie within a share of its radii.
-fn core(grower: &Grower, candidate: &Candidate, share: f64) -> Vec<u32> {
+/// The pieces of a candidate whose middles lie within a share of its radii of its centre or of its seed's middle.
+fn core(surface: &Surface, Candidate { splat, pieces, .. }: &Candidate, seed: u32, share: f64) -> Vec<u32> {
+    let at = |piece: u32| splat.to_local(surface.middle(piece)).truncate();
+    let seed = at(seed);
     let inside = |piece: &u32| {
-        let uv = candidate.splat.to_local(grower.surface.middle(*piece)).truncate();
-        candidate.splat.ellipse(uv) <= share * share
+        let uv = at(*piece);
+        splat.ellipse(uv).min(splat.ellipse(uv - seed)) <= share * share
     };
-    candidate.pieces.iter().copied().filter(inside).collect()
+    pieces.iter().copied().filter(inside).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::sample::cover::tests::candidate;
+
+    #[test]
+    fn no_seed_is_planted_beside_the_one_that_a_splat_grew_from_to_one_side() {
+        let at = |x: f32| Vec3::new(x, 0.0, 0.0);
+        let surface = Surface {
+            points: [-0.9, 0.3, 0.6, 0.9].map(at).to_vec(),
+            pieces: (0..4).map(|n| [n; 3]).collect(),
+            ..Surface::default()
+        };
+        let around = |seed: u32| core(&surface, &candidate(&[0, 1, 2, 3]), seed, 0.4);
+        assert_eq!((around(1), around(3)), (vec![1, 2], vec![1, 2, 3]));
+    }
 }

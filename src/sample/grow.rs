@@ -1,8 +1,8 @@
 //! Grows the largest splat around a seed that stays within the budget.
 //!
 //! After Wu and Kobbelt 2004: the domain grows until the fit's largest error passes the
-//! bound. Here it is an ellipse in the principal frame, first round, then longer along each
-//! axis while that holds, and it is cut where the walk over the surface meets a border.
+//! bound. Here it is an ellipse in the principal frame, grown by [`super::enlarge`], and it is cut where
+//! the walk over the surface meets a border.
 
 use std::cell::Cell;
 
@@ -23,26 +23,9 @@ use crate::fit::quadric::{RIDGE, STIFF_RIDGE};
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::splat::Splat;
 
-/// Factors by which a round domain grows, each while it succeeds.
-const ROUND_STEPS: [f64; 3] = [1.5, 1.2, 1.07];
-
-/// Factors by which one radius grows, each while it succeeds.
-const STRETCH_STEPS: [f64; 3] = [1.6, 1.25, 1.08];
-
-/// Steps of growth that may pass before a new point of the surface is reached.
-const PATIENCE: usize = 4;
-
 /// More clip curves than this on one splat cost about as much as a second splat would: with 32, files are between
 /// 0.4 % smaller (a truck) and 1 % larger (a sheet with a hundred holes).
 pub(super) const MOST_CLIPS: usize = 8;
-
-/// No radius grows beyond this, in model units: the model lies within `[-1, 1]³`.
-const LONGEST_RADIUS: f64 = 4.0;
-
-/// A splat that partners cut reaches at most this many times as far along each axis as what it
-/// covers: all of it beyond a line shows that no partner cuts, and they are made for places near
-/// the line. (An ellipse around a rectangle reaches 1.42 times as far.)
-const MOST_REACH: f64 = 3.0;
 
 /// A fit that turns the normal by more than this (cosine of 3°) is judged on what its own
 /// ellipse reaches.
@@ -264,38 +247,6 @@ impl Grower<'_> {
         Self { budget, ..*self }.grow(piece, region)
     }
 
-    /// A domain grown as long as it keeps the budget and reaches more of the surface.
-    pub(super) fn enlarged(&self, mut best: Domain, seeds: &[u32], region: &mut Region) -> Domain {
-        let mut grow = |best: &mut Domain, factor: DVec2| {
-            let reached = best.members;
-            let mut grown = best.clone();
-            // A domain that grows over nothing but what is cut away gains nothing, but the
-            // next point of the surface may lie a few steps off.
-            for _ in 0..PATIENCE {
-                let radii = grown.radii * factor;
-                if radii.max_element() > LONGEST_RADIUS || self.overreaches(radii, &grown) {
-                    return false;
-                }
-                match self.attempt(&grown.pose, radii, seeds, region) {
-                    Ok(domain) => grown = domain,
-                    Err(_) => return false,
-                }
-                if grown.members > reached {
-                    *best = grown;
-                    return true;
-                }
-            }
-            false
-        };
-        for step in ROUND_STEPS {
-            while grow(&mut best, DVec2::splat(step)) {}
-        }
-        for step in STRETCH_STEPS {
-            while grow(&mut best, DVec2::new(step, 1.0)) || grow(&mut best, DVec2::new(1.0, step)) {}
-        }
-        best
-    }
-
     /// Fits a splat to what an ellipse reaches; why not, if it does not keep the budget.
     pub(super) fn attempt(
         &self,
@@ -337,12 +288,6 @@ impl Grower<'_> {
         let extent = extents.fold(DVec2::ZERO, DVec2::max);
         let Principal { pose, curvature, rank, .. } = fitted;
         Ok(Domain { pose, radii, curvature, rank, members, extent })
-    }
-
-    /// Whether a domain would grow too far beyond what it covers for its partners to cut it.
-    fn overreaches(&self, radii: DVec2, grown: &Domain) -> bool {
-        let beyond = (radii - MOST_REACH * grown.extent).cmpgt(DVec2::ZERO) & radii.cmpgt(grown.radii);
-        self.budget.clip.clips == Clips::Partners && beyond.any()
     }
 
     /// The quadric of members and rim, in its principal frame; `None` if it is too steep. Where the

@@ -10,6 +10,7 @@ pub mod cover;
 pub mod disc;
 pub mod edge_cases;
 pub mod enclose;
+mod enlarge;
 mod exchange;
 pub mod facet;
 mod follow;
