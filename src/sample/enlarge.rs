@@ -38,12 +38,23 @@ const MOST_REACH: f64 = 3.0;
 
 impl Grower<'_> {
     /// A domain grown as long as it keeps the budget and reaches more of the surface.
-    pub(super) fn enlarged(&self, mut best: Domain, seeds: &[u32], region: &mut Region) -> Domain {
+    pub(super) fn enlarged(&self, least: Domain, seeds: &[u32], region: &mut Region) -> Domain {
+        let around = self.grown_around(least, seeds, region);
+        self.grown_aside(around, seeds, region)
+    }
+
+    /// The same around its centre: as a whole, then along each axis.
+    pub(super) fn grown_around(&self, mut best: Domain, seeds: &[u32], region: &mut Region) -> Domain {
         for step in ROUND_STEPS {
             while self.grows(&mut best, DVec2::splat(step), seeds, region) {}
         }
         let [along, across] = [DVec2::new(STRETCH_STEP, 1.0), DVec2::new(1.0, STRETCH_STEP)];
         while self.grows(&mut best, along, seeds, region) || self.grows(&mut best, across, seeds, region) {}
+        best
+    }
+
+    /// The same to each side by itself.
+    pub(super) fn grown_aside(&self, mut best: Domain, seeds: &[u32], region: &mut Region) -> Domain {
         for share in SIDE_STEPS {
             let mut open = SIDES.to_vec();
             while !open.is_empty() {

@@ -217,8 +217,11 @@ impl Grower<'_> {
         let seeds = self.surface.pieces[piece as usize];
         starts.find_map(|(pose, radii)| {
             let least = self.attempt(&pose, radii, &seeds, region).ok()?;
-            let best = self.enlarged(least, &seeds, region);
-            settle(self, best, &seeds, piece, region)
+            let around = self.grown_around(least, &seeds, region);
+            let aside = self.grown_aside(around.clone(), &seeds, region);
+            // One that grew to a side may hold only where it is smaller, and there its seed lies outside: of scan
+            // lines far apart a quarter of the points took a last resort for that.
+            settle(self, aside, &seeds, piece, region).or_else(|| settle(self, around, &seeds, piece, region))
         })
     }
 
