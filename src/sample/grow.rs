@@ -1,7 +1,7 @@
 //! Grows the largest splat around a seed that stays within the budget.
 //!
 //! After Wu and Kobbelt 2004: the domain grows until the fit's largest error passes the
-//! bound. Here it is an ellipse in the principal frame, grown by [`super::enlarge`], and it is cut where
+//! bound. Here it is an ellipse in the principal frame, grown by `super::enlarge`, and it is cut where
 //! the walk over the surface meets a border.
 
 use std::cell::Cell;
