@@ -18,8 +18,8 @@ const ROUND_STEPS: [f64; 3] = [1.5, 1.2, 1.07];
 /// one side, files are 2 % larger.
 const STRETCH_STEP: f64 = 1.6;
 
-/// Shares of a radius by which a domain goes on to one side, each while it succeeds. A third of 0.1 makes files no
-/// smaller. Nor do domains that give up something on the other side, by half of what they gain or as much.
+/// Shares of a radius by which a domain goes on to one side, each while it succeeds. A third step, of 0.1, makes
+/// files no smaller; nor do domains that give up half of what they gain, or as much, on the other side.
 const SIDE_STEPS: [f64; 2] = [0.5, 0.2];
 
 /// The sides of a domain.
@@ -70,7 +70,7 @@ impl Grower<'_> {
         // A domain that grows over nothing but what is cut away gains nothing, but the next point of the
         // surface may lie a few steps off.
         for _ in 0..PATIENCE {
-            let Some(domain) = self.with(&grown, &grown.pose, grown.radii * factors, seeds, region) else {
+            let Some(domain) = self.larger(&grown, &grown.pose, grown.radii * factors, seeds, region) else {
                 return false;
             };
             grown = domain;
@@ -86,7 +86,7 @@ impl Grower<'_> {
     fn goes_on(&self, best: &mut Domain, side: DVec2, seeds: &[u32], region: &mut Region) -> bool {
         let shift = 0.5 * side * best.radii;
         let pose = moved(best, shift);
-        match self.with(best, &pose, best.radii + shift.abs(), seeds, region) {
+        match self.larger(best, &pose, best.radii + shift.abs(), seeds, region) {
             Some(domain) if domain.members > best.members => {
                 *best = domain;
                 true
@@ -96,7 +96,7 @@ impl Grower<'_> {
     }
 
     /// A domain at another pose, with larger radii, if these are not too large and it keeps the budget.
-    fn with(
+    fn larger(
         &self,
         grown: &Domain,
         pose: &Pose,
@@ -126,30 +126,17 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::analyse::split::split;
-    use crate::analyse::weld::Welded;
     use crate::model::splat::Splat;
     use crate::sample::budget::Budget;
+    use crate::sample::exchange::tests::sheet;
 
-    /// Vertices along each side of the sheet.
-    const SIDE: u32 = 41;
-
-    /// Where it folds.
+    /// Where a sheet folds.
     const FOLD: f64 = 0.7;
 
     #[test]
     fn a_seed_beside_a_fold_grows_over_all_that_lies_on_its_side() {
-        // A sheet over the unit square, flat but for a fold that no line follows.
-        let place = |n: u32| {
-            let [x, y] = [n % SIDE, n / SIDE].map(|at| f64::from(at) / f64::from(SIDE - 1));
-            DVec3::new(x, y, 2.0 * (x - FOLD).max(0.0)).as_vec3()
-        };
-        let cells = (0..(SIDE - 1) * (SIDE - 1)).map(|n| n / (SIDE - 1) * SIDE + n % (SIDE - 1));
-        let triangles: Vec<[u32; 3]> =
-            cells.flat_map(|n| [[n, n + 1, n + SIDE], [n + 1, n + SIDE + 1, n + SIDE]]).collect();
-        let positions = (0..SIDE * SIDE).map(place).collect();
-        let sides = vec![false; 3 * triangles.len()];
-        let surface = split(&Welded { positions, triangles, ..Welded::default() }, &sides);
+        // No line follows the fold.
+        let surface = sheet(|x, _| 2.0 * (x - FOLD).max(0.0));
         let round = |splat: &Splat| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(0.004, Clips::Curved), &round);
         let seed = DVec3::new(FOLD - 0.1, 0.5, 0.0);

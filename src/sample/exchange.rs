@@ -171,11 +171,11 @@ pub(super) mod tests {
     /// Vertices along each side of a sheet.
     const SIDE: u32 = 40;
 
-    /// A sheet of waves over the unit square.
-    pub(in crate::sample) fn waves() -> Surface {
+    /// A sheet over the unit square, so high over each place.
+    pub(in crate::sample) fn sheet(height: impl Fn(f64, f64) -> f64) -> Surface {
         let place = |n: u32| {
             let [x, y] = [n % SIDE, n / SIDE].map(|at| f64::from(at) / f64::from(SIDE - 1));
-            Vec3::new(x as f32, y as f32, (0.04 * libm::sin(9.0 * x) * libm::cos(7.0 * y)) as f32)
+            Vec3::new(x as f32, y as f32, height(x, y) as f32)
         };
         let cells = (0..(SIDE - 1) * (SIDE - 1)).map(|n| n / (SIDE - 1) * SIDE + n % (SIDE - 1));
         let triangles: Vec<[u32; 3]> =
@@ -183,6 +183,11 @@ pub(super) mod tests {
         let positions = (0..SIDE * SIDE).map(place).collect();
         let sides = vec![false; 3 * triangles.len()];
         split(&Welded { positions, triangles, ..Welded::default() }, &sides)
+    }
+
+    /// One of waves.
+    pub(in crate::sample) fn waves() -> Surface {
+        sheet(|x, y| 0.04 * libm::sin(9.0 * x) * libm::cos(7.0 * y))
     }
 
     #[test]
