@@ -99,9 +99,10 @@ impl Layout<'_> {
     /// either alone covers, and all that only both do.
     fn needs(&self, other: usize) -> [Vec<u32>; SHARES.len()] {
         let (own, theirs) = (self.towards(self.index, other), self.towards(other, self.index));
-        let shared = || self.owners.shared(self.cover, [self.index, other]);
+        let shared: Vec<u32> = self.owners.shared(self.cover, [self.index, other]).collect();
         SHARES.map(|(kept, taken)| {
-            let mut need: Vec<u32> = own.part(kept).chain(theirs.part(taken)).chain(shared()).collect();
+            let mut need: Vec<u32> =
+                own.part(kept).chain(theirs.part(taken)).chain(shared.iter().copied()).collect();
             // Three runs that ascend, which a stable sort merges.
             need.sort();
             need

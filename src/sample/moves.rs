@@ -11,7 +11,7 @@ use super::candidates::Regions;
 use super::cover::{Cover, cost};
 use super::enclose::Need;
 use super::grow::Grower;
-use super::owners::Owners;
+use super::owners::{Owners, some_of};
 use super::region::Region;
 use super::settle::Candidate;
 use crate::fit::pose::Axes;
@@ -120,16 +120,32 @@ impl Search<'_> {
         });
         merger.or_else(|| {
             let axes = self.cover.candidates[index].splat.axes;
-            let need = Need::new(self.grower.surface, self.cover.own(&[index]), axes)?;
+            let need = Need::new(self.grower.surface, self.alone(index), axes)?;
             self.move_to(&need, vec![index], region)
         })
+    }
+
+    /// Those of [some](some_of) of the pieces of a splat that it alone covers, ascending.
+    fn alone(&self, index: usize) -> Vec<u32> {
+        let pieces = some_of(&self.cover.candidates[index].pieces);
+        pieces.filter(|&piece| self.cover.times[piece as usize] == 1).collect()
+    }
+
+    /// Those of some of the pieces of one that only it and another cover, ascending.
+    fn shared(&self, [one, other]: [usize; 2]) -> Vec<u32> {
+        let [one, other] = [one, other].map(|of| &self.cover.candidates[of].pieces);
+        let twice = some_of(one).filter(|&piece| self.cover.times[piece as usize] == 2);
+        twice.filter(|piece| other.binary_search(piece).is_ok()).collect()
     }
 
     /// What only two splats cover; `None` if it reaches too far for one.
     fn pair(&self, index: usize, other: usize) -> Option<Need> {
         let [one, two] = [index, other].map(|of| &self.cover.candidates[of].splat);
         let larger = if one.radii.element_product() >= two.radii.element_product() { one } else { two };
-        let need = Need::new(self.grower.surface, self.cover.own(&[index, other]), larger.axes)?;
+        let mut pieces = [self.alone(index), self.alone(other), self.shared([index, other])].concat();
+        // Three runs that ascend, which a stable sort merges.
+        pieces.sort();
+        let need = Need::new(self.grower.surface, pieces, larger.axes)?;
         let most = FARTHEST * one.radii.max(two.radii).max_element();
         (need.reach <= most).then_some(need)
     }

@@ -22,15 +22,14 @@ impl Owners {
         self.0.row(piece)
     }
 
-    /// For each candidate of the cover, the pieces that it alone covers, ascending; none if it is not chosen.
+    /// For each candidate of the cover, those of [some](some_of) of its pieces that it alone covers, ascending; none if
+    /// it is not chosen.
     pub(super) fn alone(&self, cover: &Cover) -> Rows {
-        let pieces = 0..cover.times.len() as u32;
-        Rows::placed(cover.candidates.len(), || {
-            pieces.clone().filter_map(|piece| match self.0.row(piece) {
-                &[owner] => Some((owner, piece)),
-                _ => None,
-            })
-        })
+        let alone = |&index: &usize| {
+            let pieces = some_of(&cover.candidates[index].pieces);
+            pieces.filter(|&piece| self.0.row(piece).len() == 1).map(move |piece| (index as u32, piece))
+        };
+        Rows::placed(cover.candidates.len(), || cover.chosen.iter().flat_map(alone))
     }
 
     /// For each candidate of the cover its share of the surface, ascending: the pieces whose middles lie deeper in
@@ -56,7 +55,7 @@ impl Owners {
         Rows::placed(cover.candidates.len(), || pieces.clone().flat_map(&owned))
     }
 
-    /// The pieces of one splat that no third covers beside it and another, ascending.
+    /// Those of [some](some_of) of the pieces of one splat that no third covers beside it and another, ascending.
     pub(super) fn shared<'a>(
         &'a self,
         cover: &'a Cover,
@@ -66,13 +65,13 @@ impl Owners {
             let row = self.0.row(*piece);
             row.len() == 2 && row.contains(&(other as u32))
         };
-        cover.candidates[one].pieces.iter().copied().filter(by_both)
+        some_of(&cover.candidates[one].pieces).filter(by_both)
     }
 
-    /// Those that cover some of what one splat of the cover covers, the nearest centre first.
+    /// Those that cover one of [some](some_of) of the pieces of a splat of the cover, the nearest centre first.
     pub(super) fn neighbours(&self, cover: &Cover, index: usize) -> Vec<usize> {
-        let pieces = cover.candidates[index].pieces.iter();
-        let mut near: Vec<u32> = pieces.flat_map(|&piece| self.0.row(piece)).copied().collect();
+        let pieces = some_of(&cover.candidates[index].pieces);
+        let mut near: Vec<u32> = pieces.flat_map(|piece| self.0.row(piece)).copied().collect();
         near.sort_unstable();
         near.dedup();
         let center = |of: usize| cover.candidates[of].splat.center;
@@ -82,6 +81,16 @@ impl Owners {
         near.sort_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
         near
     }
+}
+
+/// Of the pieces of a splat at most about so many are looked at where others are laid out for some of them. Each piece
+/// of a dense cloud is one of its points, of which a splat may cover fifty thousand.
+const MOST_LOOKED_AT: usize = 4096;
+
+/// Some of the pieces of a splat, evenly strewn, ascending, and all where they are few: they lie along a space-filling
+/// curve.
+pub(super) fn some_of(pieces: &[u32]) -> impl Iterator<Item = u32> + '_ {
+    pieces.iter().copied().step_by(pieces.len().div_ceil(MOST_LOOKED_AT).max(1))
 }
 
 #[cfg(test)]
@@ -106,6 +115,15 @@ mod tests {
         assert_eq!(owners.shared(&cover, [0, 2]).collect::<Vec<u32>>(), [2]);
         assert_eq!(owners.shared(&cover, [0, 3]).count(), 0, "a third covers that too");
         assert_eq!(owners.neighbours(&cover, 0), [3, 2], "the nearest first");
+    }
+
+    #[test]
+    fn of_many_pieces_some_are_looked_at_over_all_of_them() {
+        let many: Vec<u32> = (0..10_000).collect();
+        assert_eq!(some_of(&many[..4096]).collect::<Vec<u32>>(), many[..4096]);
+        let some: Vec<u32> = some_of(&many).collect();
+        assert!(some.len() == 3334 && some.windows(2).all(|pair| pair[1] - pair[0] == 3), "{}", some.len());
+        assert_eq!(some_of(&[]).count(), 0);
     }
 
     #[test]
