@@ -91,6 +91,12 @@ impl Rows {
         Self { items: (0..starts[lengths.len()]).collect(), starts }
     }
 
+    /// How many rows there are.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.starts.len().saturating_sub(1) as u32
+    }
+
     /// The items of a row.
     #[must_use]
     pub fn row(&self, row: u32) -> &[u32] {

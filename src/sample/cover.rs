@@ -14,6 +14,7 @@ use super::grow::Grower;
 use super::moves::improve;
 use super::polygon;
 use super::region::Region;
+use super::set_cover::Alike;
 use super::settle::Candidate;
 use super::tighten::tighten;
 use crate::model::sight::Sight;
@@ -89,8 +90,9 @@ pub fn cover(grower: &Grower, regions: &Regions, candidates: Vec<Candidate>, eff
     choice.candidates = cover.candidates.len();
     choice.redundant = cover.drop_redundant();
     choice.merged = improve(grower, regions, &mut cover, effort);
-    cover.rechoose();
-    exchange(grower, regions, &mut cover, effort);
+    let mut alike = Alike::new(cover.areas.len());
+    cover.rechoose(&mut alike);
+    exchange(grower, regions, &mut cover, &mut alike, effort);
     tighten(grower, regions, &mut cover);
     choice.low_rank = cover.chosen.iter().filter(|&&index| cover.candidates[index].rank < 6).count();
     (cover, choice)

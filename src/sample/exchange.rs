@@ -16,6 +16,7 @@ use super::enclose::Need;
 use super::grow::Grower;
 use super::owners::Owners;
 use super::region::Region;
+use super::set_cover::Alike;
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
 use crate::analyse::surface::Rows;
@@ -47,7 +48,7 @@ impl Thoroughness {
 }
 
 /// Lays out splats for other shares of the surface, and chooses anew, while that saves something.
-pub(super) fn exchange(grower: &Grower, regions: &Regions, cover: &mut Cover, effort: u8) {
+pub(super) fn exchange(grower: &Grower, regions: &Regions, cover: &mut Cover, alike: &mut Alike, effort: u8) {
     let Thoroughness { rounds, neighbours } = Thoroughness::of(effort);
     let mut tried = BTreeSet::new();
     for _ in 0..rounds {
@@ -56,7 +57,7 @@ pub(super) fn exchange(grower: &Grower, regions: &Regions, cover: &mut Cover, ef
             tried.insert(key);
             cover.candidates.extend(found);
         }
-        cover.rechoose();
+        cover.rechoose(alike);
         if spent - cover.cost() < WORTH * spent {
             break;
         }
@@ -202,7 +203,7 @@ pub(super) mod tests {
         let grown = candidates(&grower, &regions, &Begun::default(), 1, |_| ());
         let (mut cover, _) = cover(&grower, &regions, grown, 1);
         let before = cover.cost();
-        exchange(&grower, &regions, &mut cover, 9);
+        exchange(&grower, &regions, &mut cover, &mut Alike::new(surface.pieces.len()), 9);
         assert!(cover.cost() < 0.95 * before, "{} for {before}", cover.cost());
         let mut covered = vec![false; surface.pieces.len()];
         for &piece in cover.chosen.iter().flat_map(|&index| &cover.candidates[index].pieces) {

@@ -15,7 +15,7 @@ mod tests;
 use serde::{Deserialize, Serialize};
 
 use super::cover::{Cover, cost};
-use super::set_cover::SetCover;
+use super::set_cover::{Alike, SetCover};
 
 /// Rounds at most. After half as many four models were within 0.2 % of the optimum of the linear
 /// relaxation, as another solver (HiGHS) found it, after these within 0.1 %; half as many again
@@ -75,7 +75,7 @@ impl Problem<'_> {
     /// nothing.
     fn bound(&self, spent: f64) -> LowerBound {
         let area = self.by_area();
-        let relaxed = SetCover::of_decisive(self.costs.to_vec(), self.covered, self.areas.len());
+        let relaxed = SetCover::of_decisive(self.costs.to_vec(), &Alike::of(self.covered, self.areas.len()));
         let peak = relaxed.ascend(relaxed.feasible(), spent, ROUNDS, |_, _| ());
         // A cover proved to be the best may be bounded a rounding above itself.
         let lagrangian = peak.bound.max(area).min(spent);

@@ -5,15 +5,16 @@
 //! 6 % smaller for it.
 
 use super::cover::{Cover, cost};
-use super::set_cover::SetCover;
+use super::set_cover::{Alike, SetCover};
 
 impl Cover {
-    /// Takes a cheaper choice from the candidates that covers the same pieces, if one is found.
-    pub(super) fn rechoose(&mut self) {
+    /// Takes a cheaper choice from the candidates that covers the same pieces, if one is found; `alike` has
+    /// the first of them, and gets the others.
+    pub(super) fn rechoose(&mut self, alike: &mut Alike) {
+        let new = &self.candidates[alike.candidates()..];
+        new.iter().for_each(|candidate| alike.add(&candidate.pieces));
         let costs = self.candidates.iter().map(|candidate| cost(&candidate.splat)).collect();
-        let covered: Vec<&[u32]> =
-            self.candidates.iter().map(|candidate| candidate.pieces.as_slice()).collect();
-        let problem = SetCover::of_decisive(costs, &covered, self.areas.len());
+        let problem = SetCover::of_decisive(costs, alike);
         let known: Vec<u32> = self.chosen.iter().map(|&index| index as u32).collect();
         let spent = problem.cost(&known);
         let found = problem.cheaper(known);
@@ -52,7 +53,7 @@ mod tests {
         let lists: [&[u32]; 5] = [&[1, 2, 4, 5], &[0], &[3], &[0, 1, 2], &[3, 4, 5]];
         let mut cover = cover(&lists, &[0, 1, 2], 6);
         assert_eq!(cover.drop_redundant(), 0);
-        cover.rechoose();
+        cover.rechoose(&mut Alike::new(cover.areas.len()));
         assert_eq!((cover.chosen.as_slice(), cover.times.as_slice()), (&[3, 4][..], &[1; 6][..]));
     }
 
@@ -60,7 +61,7 @@ mod tests {
     fn a_choice_that_cannot_be_bettered_stays_as_it_is() {
         // Another choice costs as much.
         let mut cover = cover(&[&[0, 1], &[2], &[0], &[1, 2]], &[1, 0], 3);
-        cover.rechoose();
+        cover.rechoose(&mut Alike::new(cover.areas.len()));
         assert_eq!((cover.chosen.as_slice(), cover.times.as_slice()), (&[1, 0][..], &[1; 3][..]));
     }
 }

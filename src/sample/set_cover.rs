@@ -13,10 +13,8 @@ mod search;
 #[cfg(test)]
 pub(super) mod tests;
 
-use rayon::prelude::*;
-
 use crate::analyse::surface::Rows;
-use alike::unlike;
+pub(super) use alike::Alike;
 use decisive::decisive;
 
 /// Candidates and the pieces that are to be covered, each by one candidate at least.
@@ -31,12 +29,11 @@ pub(super) struct SetCover {
 }
 
 impl SetCover {
-    /// The pieces that decide ([`decisive`]), numbered anew in their order: what covers these covers
-    /// every piece that some candidate covers. `covered` lists the pieces of each candidate.
-    pub(super) fn of_decisive(costs: Vec<f64>, covered: &[&[u32]], pieces: usize) -> Self {
-        let unlike = unlike(covered, pieces);
-        let covering = covering(covered, &unlike, pieces);
-        let kept = decisive(&covering, unlike.len(), costs.len());
+    /// Candidates of such costs, and of the pieces of each lot one, those that decide ([`decisive`]): what
+    /// covers these covers every piece that some candidate covers.
+    pub(super) fn of_decisive(costs: Vec<f64>, alike: &Alike) -> Self {
+        let covering = alike.covering();
+        let kept = decisive(&covering, costs.len());
         Self::over(costs, kept.len(), |piece| covering.row(kept[piece as usize]).iter().copied())
     }
 
@@ -97,15 +94,4 @@ impl SetCover {
         chosen.sort_unstable();
         chosen
     }
-}
-
-/// For each of some of the pieces the candidates that cover it, ascending.
-fn covering(covered: &[&[u32]], some: &[u32], pieces: usize) -> Rows {
-    let mut places = vec![None; pieces];
-    (0_u32..).zip(some).for_each(|(place, &piece)| places[piece as usize] = Some(place));
-    let kept = |pieces: &&[u32]| pieces.iter().filter_map(|&piece| places[piece as usize]).collect();
-    let kept: Vec<Vec<u32>> = covered.par_iter().map(kept).collect();
-    Rows::placed(some.len(), || {
-        (0_u32..).zip(&kept).flat_map(|(index, places)| places.iter().map(move |&place| (place, index)))
-    })
 }

@@ -7,7 +7,7 @@ use super::cover::{Cover, cost};
 use super::grow::Grower;
 use super::polygon;
 use super::seal::{Make, grown, made_within};
-use super::set_cover::SetCover;
+use super::set_cover::{Alike, SetCover};
 use super::settle::Candidate;
 use crate::analyse::canonical::mix;
 use crate::model::sight::Sight;
@@ -169,7 +169,7 @@ impl Cover {
     pub(super) fn cheapest(&self, does: &[(usize, Vec<u32>)], all: usize) -> Vec<usize> {
         let costs = does.iter().map(|&(index, _)| cost(&self.candidates[index].splat)).collect();
         let lists: Vec<&[u32]> = does.iter().map(|(_, done)| done.as_slice()).collect();
-        let problem = SetCover::of_decisive(costs, &lists, all);
+        let problem = SetCover::of_decisive(costs, &Alike::of(&lists, all));
         let known = (0..does.len() as u32).collect();
         problem.cheaper(known).into_iter().map(|at| does[at as usize].0).collect()
     }

@@ -11,9 +11,9 @@ use crate::analyse::surface::Rows;
 
 /// Pieces, ascending, such that any choice of candidates that covers them covers every piece that
 /// some candidate covers. `covering` lists the candidates of each piece, ascending.
-pub(super) fn decisive(covering: &Rows, pieces: usize, candidates: usize) -> Vec<u32> {
+pub(super) fn decisive(covering: &Rows, candidates: usize) -> Vec<u32> {
     let row = |piece: u32| covering.row(piece);
-    let mut order: Vec<u32> = (0..pieces as u32).filter(|&piece| !row(piece).is_empty()).collect();
+    let mut order: Vec<u32> = (0..covering.count()).filter(|&piece| !row(piece).is_empty()).collect();
     // Those with the fewest candidates first, since only they can stand for others.
     order.par_sort_unstable_by(|&a, &b| {
         row(a).len().cmp(&row(b).len()).then_with(|| row(a).cmp(row(b))).then(a.cmp(&b))
@@ -55,6 +55,6 @@ mod tests {
         let rows: [&[u32]; 6] = [&[0, 1], &[0, 1, 2], &[], &[2, 3], &[0, 1], &[0, 2, 3]];
         let pairs =
             || (0_u32..).zip(rows).flat_map(|(piece, row)| row.iter().map(move |&index| (piece, index)));
-        assert_eq!(decisive(&Rows::placed(rows.len(), pairs), rows.len(), 4), [0, 3]);
+        assert_eq!(decisive(&Rows::placed(rows.len(), pairs), 4), [0, 3]);
     }
 }

@@ -21,7 +21,7 @@ pub(in crate::sample) fn cheapest(costs: &[f64], covered: &[Vec<u32>], pieces: u
 
 fn problem(costs: &[f64], covered: &[Vec<u32>], pieces: usize) -> SetCover {
     let covered: Vec<&[u32]> = covered.iter().map(Vec::as_slice).collect();
-    SetCover::of_decisive(costs.to_vec(), &covered, pieces)
+    SetCover::of_decisive(costs.to_vec(), &Alike::of(&covered, pieces))
 }
 
 fn covers_all(chosen: &[u32], covered: &[Vec<u32>], pieces: u32) -> bool {
