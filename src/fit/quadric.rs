@@ -48,11 +48,27 @@ pub struct Height {
     pub rank: u8,
 }
 
+/// Powers `u^p v^q` up to the fourth degree.
+const POWERS: usize = 15;
+
+/// Which power each entry of the normal equations is the sum of: line `n` times column `m` of
+/// `1, u, v, u², uv, v²`.
+const PRODUCTS: [[usize; 6]; 6] = [
+    [0, 1, 2, 3, 4, 5],
+    [1, 3, 4, 6, 7, 8],
+    [2, 4, 5, 7, 8, 9],
+    [3, 6, 7, 10, 11, 12],
+    [4, 7, 8, 11, 12, 13],
+    [5, 8, 9, 12, 13, 14],
+];
+
 /// Sums of `u^p v^q w^s` over points: all that a fit needs, additive over sets of points.
 #[derive(Clone, Debug)]
 pub struct Moments {
-    normal: Normal,
-    right: Right,
+    /// Of `1, u, v, u², uv, v², u³, u²v, uv², v³, u⁴, u³v, u²v², uv³, v⁴`.
+    powers: [f64; POWERS],
+    /// Of the first six of these times `w`.
+    right: [f64; 6],
     radius: f64,
 }
 
@@ -60,32 +76,56 @@ impl Moments {
     /// No points yet. `radius` is the unit of `u` and `v`, and must be positive.
     #[must_use]
     pub fn new(radius: f64) -> Self {
-        Self { normal: Normal::zeros(), right: Right::zeros(), radius }
+        Self { powers: [0.0; POWERS], right: [0.0; 6], radius }
     }
 
     /// Adds a point given in the frame's coordinates, counted `weight` times.
+    #[inline]
     pub fn add(&mut self, u: f64, v: f64, w: f64, weight: f64) {
         let (u, v) = (u / self.radius, v / self.radius);
-        let row = Right::from([1.0, u, v, u * u, u * v, v * v]);
-        for column in 0..6 {
-            for line in column..6 {
-                self.normal[(line, column)] += weight * row[line] * row[column];
-            }
+        let [uu, uv, vv] = [u * u, u * v, v * v];
+        let powers = [
+            1.0,
+            u,
+            v,
+            uu,
+            uv,
+            vv,
+            uu * u,
+            uu * v,
+            u * vv,
+            vv * v,
+            uu * uu,
+            uu * uv,
+            uu * vv,
+            uv * vv,
+            vv * vv,
+        ];
+        for (sum, power) in self.powers.iter_mut().zip(powers) {
+            *sum += weight * power;
         }
-        self.right += row * (weight * w);
+        for (sum, power) in self.right.iter_mut().zip(powers) {
+            *sum += weight * w * power;
+        }
+    }
+
+    /// The normal equations.
+    fn equations(&self) -> (Normal, Right) {
+        let normal = Normal::from_fn(|line, column| self.powers[PRODUCTS[line][column]]);
+        (normal, Right::from(self.right))
     }
 
     /// The least-squares plane: a height whose second-order terms are zero.
     #[must_use]
     pub fn solve_plane(&self) -> Height {
         let second_order = 3..6;
-        let mut plane = self.clone();
+        let (mut normal, mut right) = self.equations();
         for term in second_order {
-            plane.normal.fill_row(term, 0.0);
-            plane.normal.fill_column(term, 0.0);
-            plane.right[term] = 0.0;
+            normal.fill_row(term, 0.0);
+            normal.fill_column(term, 0.0);
+            right[term] = 0.0;
         }
-        let (x, rank) = least_norm(&plane.normal, &plane.right);
+        let (x, rank) = least_norm(&normal, &right);
         Height { h: x[0], c: x[1] / self.radius, d: x[2] / self.radius, rank, ..Height::default() }
     }
 
@@ -95,17 +135,18 @@ impl Moments {
     /// keeping the one of `u` and `v` small.
     #[must_use]
     pub fn solve(&self, ridge: f64, mixed: f64) -> Height {
-        let count = self.normal[(0, 0)];
+        let count = self.powers[0];
         if count == 0.0 {
             return Height::default();
         }
-        let mut normal = self.normal;
+        let (plain, right) = self.equations();
+        let mut normal = plain;
         for (second_order, ridge) in [(3, ridge), (4, mixed), (5, ridge)] {
             normal[(second_order, second_order)] += ridge * count;
         }
-        let (x, rank) = match cholesky(&normal, &self.right) {
+        let (x, rank) = match cholesky(&normal, &right) {
             Some(x) => (x, 6),
-            None => least_norm(&self.normal, &self.right),
+            None => least_norm(&plain, &right),
         };
         let (one, two) = (1.0 / self.radius, 1.0 / (self.radius * self.radius));
         Height { h: x[0], c: x[1] * one, d: x[2] * one, a: x[3] * two, e: x[4] * two, b: x[5] * two, rank }
@@ -152,9 +193,7 @@ fn cholesky(normal: &Normal, right: &Right) -> Option<Right> {
 
 /// The least-norm solution by the eigenvectors of the normal matrix, and its rank.
 fn least_norm(normal: &Normal, right: &Right) -> (Right, u8) {
-    let mut whole = *normal;
-    whole.fill_upper_triangle_with_lower_triangle();
-    let eigen = whole.symmetric_eigen();
+    let eigen = normal.symmetric_eigen();
     let least = WEAK_PIVOT.max(f64::EPSILON) * eigen.eigenvalues.max();
     let mut x = Right::zeros();
     let mut rank = 0;

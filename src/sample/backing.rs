@@ -138,9 +138,30 @@ fn directions(count: usize) -> impl Iterator<Item = DVec2> {
 /// The surface around a region's rim, in splat coordinates.
 #[derive(Default)]
 pub(super) struct Below {
-    triangles: Vec<[DVec3; 3]>,
+    triangles: Vec<Facet>,
     /// Single points and how far from each the surface goes on.
     points: Vec<(DVec2, f64)>,
+}
+
+/// A triangle in splat coordinates.
+struct Facet {
+    corners: [DVec3; 3],
+    /// The box around it in the plane of `u` and `v`: most places lie outside, which is soon seen.
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Facet {
+    fn new(corners: [DVec3; 3]) -> Self {
+        let [a, b, c] = corners.map(|corner| corner.truncate());
+        Self { corners, low: a.min(b).min(c), high: a.max(b).max(c) }
+    }
+
+    /// Its height over a place, if it lies over it.
+    fn height_over(&self, uv: DVec2) -> Option<f64> {
+        let is_near = uv.cmpge(self.low).all() && uv.cmple(self.high).all();
+        if is_near { height_over(&self.corners, uv) } else { None }
+    }
 }
 
 impl Below {
@@ -148,7 +169,7 @@ impl Below {
     pub(super) fn triangles(surface: &Surface, pose: &Pose, points: impl Iterator<Item = u32>) -> Self {
         let corners = surface.pieces_at(points).into_iter().map(|piece| surface.pieces[piece as usize]);
         let local = |point: u32| pose.to_local(surface.point(point));
-        Self { triangles: corners.map(|corners| corners.map(local)).collect(), ..Self::default() }
+        Self { triangles: corners.map(|corners| Facet::new(corners.map(local))).collect(), ..Self::default() }
     }
 
     /// The points of a cloud that stand for others, and themselves.
@@ -181,15 +202,15 @@ impl Below {
     /// Whether a triangle lies within the budget for rims of a height over a place, or within
     /// `overhang` beside it.
     pub(super) fn near(&self, uv: DVec2, height: f64, budget: &Budget, overhang: f64) -> bool {
-        let over = |triangle: &[DVec3; 3]| {
-            height_over(triangle, uv).is_some_and(|surface| budget.reaches(surface - height, 1.0))
+        let over = |facet: &Facet| {
+            facet.height_over(uv).is_some_and(|surface| budget.reaches(surface - height, 1.0))
         };
         self.triangles.iter().any(over) || (overhang > 0.0 && self.is_within(overhang, uv.extend(height)))
     }
 
     /// Whether a triangle comes so close to a place, in space.
     pub(super) fn is_within(&self, reach: f64, place: DVec3) -> bool {
-        self.triangles.iter().any(|triangle| to_triangle(*triangle, place).length() <= reach)
+        self.triangles.iter().any(|facet| to_triangle(facet.corners, place).length() <= reach)
     }
 }
 
@@ -266,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_rim_stands_out_beside_a_triangle_by_no_more_than_it_may() {
-        let triangles = vec![[DVec3::ZERO, DVec3::NEG_X, DVec3::NEG_Y]];
+        let triangles = vec![Facet::new([DVec3::ZERO, DVec3::NEG_X, DVec3::NEG_Y])];
         let below = Below { triangles, ..Below::default() };
         let budget = Budget { rim: 0.4, proud: 0.2, ..Budget::new(0.1, Clips::Curved) };
         let near =
@@ -283,7 +304,7 @@ mod tests {
         let clip = ClipCurve { alpha1: 2.917, alpha3: 2.956, p2: DVec2::new(-0.344, 0.075), rho: 1.0 };
         let holds = |apex: f64| {
             let wedge = [DVec3::new(apex, 0.0, 0.0), DVec3::new(1.4, -1.5, 0.0), DVec3::new(1.4, 1.5, 0.0)];
-            let [below, along_lines] = [(); 2].map(|()| Below { triangles: vec![wedge], ..Below::default() });
+            let [below, along_lines] = [(); 2].map(|()| Below { triangles: vec![Facet::new(wedge)], ..Below::default() });
             let outer = DVec2::new(0.575, 0.06);
             let (overhang, curvature, near) = (0.0, DVec2::ZERO, Vec::new());
             Backing { budget: &budget, overhang, outer, curvature, below, along_lines, near }.holds(&[clip])
