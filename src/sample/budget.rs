@@ -21,13 +21,9 @@ pub struct Budget {
     /// The same where splats of a cloud may pass lines at the greatest distance, if that is what it takes to do
     /// without a last resort.
     pub far_line: f64,
-    /// How far a quadric may sink below the surface that it reaches over but need not cover, because
-    /// another splat does: twice the budget (of which quantising takes its share). The error
-    /// of a quadric grows with the third power of the distance, so this is worth a quarter of
-    /// the radius.
+    /// How far a quadric may lie off the surface that it reaches over but need not cover, because
+    /// another splat does: more than what it covers, since its error grows with the third power of the distance.
     pub rim: f64,
-    /// How far it may stand above such a surface: less, because it shows there.
-    pub proud: f64,
     /// How far, in space, a rim may stand out where the surface folds away below it, if that is what
     /// it takes to do without a last resort.
     pub overhang: f64,
@@ -43,11 +39,11 @@ pub struct Budget {
 /// as narrow as the bound, as the lip of a teapot is at one percent, no ellipse has it all below.
 const OVERHANG_SHARE: f64 = 0.5;
 
-/// Bounds by which a rim may stand above the surface. A rim that sinks lies hidden below the splat that
-/// covers there; one that stands out is seen, at silhouettes most of all. At 2, as for rims that sink, a
-/// few pixels stand out on most models at a tenth of a percent; at 1.2 to 1.4 files are the smallest for
-/// their backward rms.
-const PROUD: f64 = 1.4;
+/// Bounds by which a rim may lie off the surface: `backward max` comes to about as much. Beside meshes of the
+/// same greatest error, files of five models are a sixth smaller than with rims that sink by two bounds, beside those
+/// of the same rms or the same normals 3 %, though 3 % larger at the same bound. Rims of 1.2 make 3 % less of the
+/// first, and 2 % more of the second.
+const RIM: f64 = 1.4;
 
 /// A rounded clip curve lies within this share of the bound of its line, in space, where it is looked at;
 /// between such places it may lie a little farther off.
@@ -76,8 +72,7 @@ impl Budget {
             line: LINE_FIT_SHARE * max_error,
             cloud_line: CLOUD_LINE_SHARE * max_error,
             far_line: FAR_LINE_SHARE * max_error,
-            rim: 2.0 * FIT_SHARE * max_error,
-            proud: PROUD * FIT_SHARE * max_error,
+            rim: RIM * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,
             pad: PAD_SHARE * max_error,
             clip,
@@ -94,14 +89,13 @@ impl Budget {
     /// A share of all of it.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
-        let &Self { fit, line, cloud_line, far_line, rim, proud, overhang, pad, clip, stored } = self;
+        let &Self { fit, line, cloud_line, far_line, rim, overhang, pad, clip, stored } = self;
         Self {
             fit: share * fit,
             line: share * line,
             cloud_line: share * cloud_line,
             far_line: share * far_line,
             rim: share * rim,
-            proud: share * proud,
             overhang: share * overhang,
             pad: share * pad,
             clip: clip.scaled(share),
@@ -120,7 +114,7 @@ impl Budget {
     /// distances allowed.
     #[must_use]
     pub fn reaches(&self, above: f64, slack: f64) -> bool {
-        (-slack * self.proud..=slack * self.rim).contains(&above)
+        above.abs() <= slack * self.rim
     }
 
     /// The radii of a splat that is trusted to cover an ellipse. It goes on a little beyond,

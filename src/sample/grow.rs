@@ -43,9 +43,8 @@ const LINE_WEIGHT: f64 = 4.0;
 const MOST_FITTED: usize = 320;
 
 /// Up to this share of an ellipse its quadric is held to the budget for fits, as if it were to cover all
-/// of it. At 0.6 to 0.9 files are of one size, at 0 (no part) 5 % larger. Beyond, it is held to how far
-/// rims may stand out, both ways: were they fitted to sink by all that they may, files would be no
-/// smaller, and more of their rims would be seen from the side.
+/// of it. At 0.6 to 0.9 files are of one size, at 0 (no part) 5 % larger. Beyond, it is held to the budget
+/// for rims.
 const COVERED_SHARE: f64 = 0.8;
 
 /// Principal directions matter where the two sagittas differ by this share of the budget.
@@ -316,7 +315,7 @@ impl Grower<'_> {
     /// What a quadric over an ellipse is fitted to, and the budget there: for what it should cover, on
     /// lines, and near the rim.
     fn limited(&self, pose: &Pose, outer: DVec2, region: &Region) -> Vec<Limited> {
-        let Budget { fit, line, proud, .. } = self.budget;
+        let Budget { fit, line, rim: off, .. } = self.budget;
         // Every so many-th of the members, which come ring by ring: the sums hardly change.
         let stride = region.members.len().div_ceil(MOST_FITTED);
         let members = region.members.iter().step_by(stride).map(|member| {
@@ -325,12 +324,12 @@ impl Grower<'_> {
             } else if (member.local.truncate() / outer).length() < COVERED_SHARE {
                 (1.0, [-fit, fit])
             } else {
-                (1.0, [-proud, proud])
+                (1.0, [-off, off])
             };
             Limited { point: self.surface.point(member.point), weight, range }
         });
         let rim =
-            self.rim(pose, outer, region).map(|point| Limited { point, weight: 1.0, range: [-proud, proud] });
+            self.rim(pose, outer, region).map(|point| Limited { point, weight: 1.0, range: [-off, off] });
         members.chain(rim).collect()
     }
 
