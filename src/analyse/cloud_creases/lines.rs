@@ -1,8 +1,11 @@
 //! Chains of samples as lines of places: which are long and sharp enough, and smoothed.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::links::Chain;
+use super::samples::Sample;
 
 /// Of a crease's samples at least this share turn by the whole angle asked for; the others carry it
 /// on (hysteresis, after Canny 1986).
@@ -31,18 +34,22 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// A chain as a line, if enough of it turns by more than an angle whose cosine is `turn`, and no bend.
+    /// The longest part of a chain of which enough turns by more than an angle whose cosine is `turn`, as a line; `None`
+    /// if there is none, or it is a bend.
+    ///
+    /// A crease that fades away is so carried on for as long as it was sharp, and no farther.
     pub(super) fn of(chain: &Chain, turn: f64) -> Option<Self> {
-        let count = chain.samples.len();
-        let sharp = chain.samples.iter().filter(|sample| sample.turn <= turn).count();
-        if count < FEWEST || (sharp as f64) < SHARP_SHARE * count as f64 {
+        let part = sharp_part(&chain.samples, turn);
+        let samples = &chain.samples[part];
+        if samples.len() < FEWEST {
             return None;
         }
-        let rounded = chain.samples.iter().map(|sample| sample.rounded).sum::<f64>() / count as f64;
+        let rounded = samples.iter().map(|sample| sample.rounded).sum::<f64>() / samples.len() as f64;
         if rounded > ROUNDED {
             return None;
         }
-        Some(Self::along(chain))
+        let closed = chain.closed && samples.len() == chain.samples.len();
+        Some(Self::along(&Chain { samples: samples.to_vec(), closed }))
     }
 
     /// A chain as a line, whatever it is of.
@@ -68,6 +75,35 @@ impl Line {
         self.places.extend(first);
         self.places
     }
+}
+
+/// The longest run of samples, the first of several, of which at least [`SHARP_SHARE`] turn by more than an angle whose
+/// cosine is `turn`.
+fn sharp_part(samples: &[Sample], turn: f64) -> Range<usize> {
+    let gain = |sample: &Sample| f64::from(u8::from(sample.turn <= turn)) - SHARP_SHARE;
+    let mut sums = vec![0.0];
+    for sample in samples {
+        sums.push(sums[sums.len() - 1] + gain(sample));
+    }
+    // Where a run may begin: nothing before lies lower.
+    let mut lows: Vec<usize> = Vec::new();
+    for n in 0..sums.len() {
+        if lows.last().is_none_or(|&low| sums[n] < sums[low]) {
+            lows.push(n);
+        }
+    }
+    let mut longest = 0..0;
+    for end in (0..sums.len()).rev() {
+        while let Some(&low) = lows.last()
+            && sums[low] <= sums[end]
+        {
+            lows.pop();
+            if low < end && end - low >= longest.len() {
+                longest = low..end;
+            }
+        }
+    }
+    longest
 }
 
 /// Each place moved onto the parabola of least squares through those around (Savitzky and Golay
@@ -151,6 +187,56 @@ impl Parabola {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analyse::planted::random;
+
+    /// A chain along x of samples that turn by so many degrees.
+    fn chain(turns: impl Iterator<Item = f64>) -> Chain {
+        let sample = |(n, turn): (usize, f64)| Sample {
+            place: n as f64 * DVec3::X,
+            along: DVec3::X,
+            between: DVec3::Z,
+            turn: libm::cos(turn.to_radians()),
+            rounded: 0.0,
+            left: 0.0,
+            doubtful: false,
+            size: 3.0,
+        };
+        Chain { samples: turns.enumerate().map(sample).collect(), closed: false }
+    }
+
+    #[test]
+    fn a_crease_that_fades_goes_on_for_as_long_as_it_was_sharp() {
+        let sharp = libm::cos(40_f64.to_radians());
+        let line = |from: f64, to: f64, step: f64| {
+            let count = ((to - from) / step) as usize;
+            Line::of(&chain((0..=count).map(|n| from + step * n as f64)), sharp)
+        };
+        let ends = |line: Option<Line>| {
+            line.map(|line| [line.places[0].x, line.places[line.places.len() - 1].x].map(f64::round))
+        };
+        assert_eq!(ends(line(31.0, 60.0, 1.0)), Some([0.0, 29.0]), "most of it is sharp");
+        // The last 20 samples are, with which as many before them go.
+        assert_eq!(ends(line(5.5, 44.75, 0.25)), Some([118.0, 157.0]));
+        assert_eq!(ends(line(20.0, 39.0, 1.0)), None);
+        assert_eq!(ends(line(20.0, 40.5, 1.0)), None, "two samples are no line");
+    }
+
+    #[test]
+    fn the_longest_part_of_which_half_is_sharp_is_found() {
+        let sharp = libm::cos(40_f64.to_radians());
+        for case in 0..2000_u64 {
+            let samples =
+                chain((0..case % 12).map(|n| if random(12 * case + n) > 0.2 { 50.0 } else { 30.0 })).samples;
+            let does = |part: &Range<usize>| {
+                let turned = samples[part.clone()].iter().filter(|sample| sample.turn <= sharp).count();
+                2 * turned >= part.len()
+            };
+            let all = (0..samples.len()).flat_map(|from| (from + 1..=samples.len()).map(move |to| from..to));
+            let longest = all.filter(does).map(|part| part.len()).max().unwrap_or_default();
+            let part = sharp_part(&samples, sharp);
+            assert!(part.len() == longest && does(&part), "{case}: {part:?}");
+        }
+    }
 
     #[test]
     fn smoothing_keeps_circles_and_takes_scatter() {
