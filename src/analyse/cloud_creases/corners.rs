@@ -35,7 +35,7 @@ const MIDWAY: f64 = 0.5;
 const PLACES_LOOKED_AT: usize = 32;
 
 /// Three directions span space if the volume between them is more than this: they do not lie in a plane by 15°.
-const SOLID: f64 = 0.26;
+pub(super) const SOLID: f64 = 0.26;
 
 /// Weight of the mean of their places among the lines that meet at a corner, so that nearly parallel ones do
 /// not meet far away.
@@ -77,8 +77,8 @@ pub(super) fn join(lines: &mut [Line], smooth: &impl Fn(DVec3) -> bool) -> Resul
     let loose = ends(lines);
     let mut joining = Joining { lines, loose, met: vec![[false; 2]; count], runs: Sets::new(count) };
     // Two edges of a corner may turn by no more than one does over a gap; a third out of their plane tells it is none.
-    let mut known = corners(&joining.loose)?;
-    known.retain(|(_, ends)| are_solid(&ends.iter().map(|&n| joining.loose[n].outward).collect::<Vec<_>>()));
+    let mut known = corners(&joining.loose, AHEAD)?;
+    known.retain(|corner| joining.is_solid(corner));
     joining.bring(&known);
     let over_gaps = gaps(&joining.loose)?;
     joining.runs_on(over_gaps.iter().map(|(_, ends)| [ends[0], ends[1]]));
@@ -86,9 +86,14 @@ pub(super) fn join(lines: &mut [Line], smooth: &impl Fn(DVec3) -> bool) -> Resul
     joining.measure();
     let round = round_gaps(joining.lines, &joining.loose, smooth)?;
     joining.go_round(round);
-    let others = corners(&joining.loose)?;
+    let others = corners(&joining.loose, AHEAD)?;
     joining.bring(&others);
     known.extend(others);
+    // By chance the samples of all edges may end that far from their corner, to which three lead all the same.
+    let mut far = corners(&joining.loose, TO_KNOWN_CORNER)?;
+    far.retain(|corner| joining.is_solid(corner));
+    joining.bring(&far);
+    known.extend(far);
     let late = to_corners(&joining.loose, &known)?;
     joining.bring(&late);
     let run = run_into(joining.lines, &joining.loose)?;
@@ -107,6 +112,11 @@ struct Joining<'a> {
 }
 
 impl Joining<'_> {
+    /// Whether the ends at a meeting span space.
+    fn is_solid(&self, (_, ends): &Meeting) -> bool {
+        are_solid(&ends.iter().map(|&n| self.loose[n].outward).collect::<Vec<_>>())
+    }
+
     /// Carries ends on to where they meet.
     fn bring(&mut self, meetings: &[Meeting]) {
         for (place, ends) in meetings {
@@ -207,13 +217,13 @@ fn between(a: &End, b: &End) -> DVec3 {
     0.5 * (a.place + b.place) + 0.125 * a.place.distance(b.place) * (a.outward + b.outward)
 }
 
-/// Where ends meet, and which do.
-fn corners(ends: &[End]) -> Result<Vec<Meeting>> {
+/// Where ends meet, at right angles at most so many sizes ahead, and which do.
+fn corners(ends: &[End], most: f64) -> Result<Vec<Meeting>> {
     let Some(search) = search(ends.iter().map(|end| end.place))? else { return Ok(Vec::new()) };
     let mut sets = Sets::new(ends.len());
     for (n, end) in ends.iter().enumerate() {
         for other in search.around(end.place.as_vec3(), LOOKED_AT) {
-            if other as usize != n && meet(end, &ends[other as usize]) {
+            if other as usize != n && meet(end, &ends[other as usize], most) {
                 sets.merge(n as u32, other);
             }
         }
@@ -221,11 +231,11 @@ fn corners(ends: &[End]) -> Result<Vec<Meeting>> {
     let mut groups: Vec<(u32, usize)> = (0..ends.len()).map(|n| (sets.root(n as u32), n)).collect();
     groups.sort_unstable();
     let groups = groups.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1);
-    Ok(groups.filter_map(|group| corner(ends, group.iter().map(|&(_, n)| n).collect())).collect())
+    Ok(groups.filter_map(|group| corner(ends, group.iter().map(|&(_, n)| n).collect(), most)).collect())
 }
 
-/// Whether two ends lead to one place.
-fn meet(a: &End, b: &End) -> bool {
+/// Whether two ends lead to one place, at right angles at most so many sizes ahead.
+fn meet(a: &End, b: &End, most: f64) -> bool {
     let cross = a.outward.cross(b.outward);
     let between = b.place - a.place;
     if cross.length() <= PARALLEL {
@@ -236,7 +246,7 @@ fn meet(a: &End, b: &End) -> bool {
     let along = |outward: DVec3| between.cross(outward).dot(cross) / square;
     let (s, t) = (along(b.outward), along(a.outward));
     let place = 0.5 * (a.place + s * a.outward + b.place + t * b.outward);
-    a.is_apart(b) && a.reaches(place, a.corner_reach(b)) && b.reaches(place, b.corner_reach(a))
+    a.is_apart(b) && a.reaches(place, a.corner_reach(b, most)) && b.reaches(place, b.corner_reach(a, most))
 }
 
 /// Whether some directions span space.
@@ -246,12 +256,12 @@ fn are_solid(ways: &[DVec3]) -> bool {
 }
 
 /// The place nearest to all lines that end there, and those ends that reach it.
-fn corner(ends: &[End], mut of: Vec<usize>) -> Option<Meeting> {
+fn corner(ends: &[End], mut of: Vec<usize>, most: f64) -> Option<Meeting> {
     loop {
         let lines: Vec<[DVec3; 2]> = of.iter().map(|&n| [ends[n].place, ends[n].outward]).collect();
         let place = meeting(&lines);
         let others = |n: usize| of.iter().filter(move |&&other| other != n).map(|&other| &ends[other]);
-        let ahead = |n: usize| others(n).map(|other| ends[n].corner_reach(other)).fold(0.0, f64::max);
+        let ahead = |n: usize| others(n).map(|other| ends[n].corner_reach(other, most)).fold(0.0, f64::max);
         let reaching: Vec<usize> = of.iter().copied().filter(|&n| ends[n].reaches(place, ahead(n))).collect();
         if reaching.len() < 2 {
             return None;
@@ -334,6 +344,26 @@ mod tests {
             DVec3::new(12.0 * cos, 12.0 * sin, 0.0)
         };
         Line { places: (0..=60).map(at).collect(), closed: false, size: 1.0 }
+    }
+
+    #[test]
+    fn three_lines_meet_farther_ahead_than_two() {
+        // Edges of a cube that end so many sizes before its corner.
+        let edges = |short: f64| {
+            let edge = |axis: DVec3| {
+                let places = (0..=30).map(|n| (short + 10.0 - f64::from(n) / 3.0) * axis).collect();
+                Line { places, closed: false, size: 1.0 }
+            };
+            DVec3::AXES.map(edge)
+        };
+        for (short, three, two) in [(1.5, true, true), (3.0, true, false), (5.0, false, false)] {
+            let mut lines = edges(short);
+            let met = join(&mut lines, &|_| true).unwrap().met;
+            assert_eq!(met, [[false, three]; 3], "{short}");
+            let ends = lines.iter().filter_map(|line| line.places.last());
+            assert!(!three || ends.into_iter().all(|end| end.length() < 0.01));
+            assert_eq!(join(&mut edges(short)[..2], &|_| true).unwrap().met, [[false, two]; 2], "{short}");
+        }
     }
 
     #[test]

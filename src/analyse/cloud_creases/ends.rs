@@ -113,11 +113,11 @@ impl End {
             && way.reject_from_normalized(self.outward).length() <= MISS * self.size
     }
 
-    /// How far ahead a corner with another may lie, in its size: there the two are as near to each other as at right
-    /// angles, or as [`AHEAD`] leaves them.
-    pub(super) fn corner_reach(&self, other: &Self) -> f64 {
+    /// How far ahead a corner with another may lie, in its size, if one at right angles may so many sizes ahead: there
+    /// the two are as near to each other as that leaves them.
+    pub(super) fn corner_reach(&self, other: &Self, most: f64) -> f64 {
         let half = (0.5 * (1.0 - self.outward.dot(other.outward)).max(0.0)).sqrt();
-        (AHEAD * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
+        (most * (HALF_RIGHT / half).max(1.0)).min(TO_SHARP_CORNER)
     }
 
     /// Of some places the nearest that the line may go on to, at most so many sizes ahead.
