@@ -7,7 +7,8 @@
 //! 3. `links`: each is linked to the next on either side; `lines` keeps the chains that are sharp
 //!    enough and smooths them.
 //! 4. `corners`: `ends` that lead to one place, or into another line, are carried on to it, or to each other over a
-//!    gap, straight or on a circle (`arcs`).
+//!    gap, straight or on a circle (`arcs`). Where three meet, `faces` tells the corner from the planes around, unless
+//!    noise calls for more points than lie beside it.
 //! 5. `arms`: creases too short for samples of their own, and gaps, are looked for between the ends of lines.
 //!
 //! Sizes are told in spacings of the points. Each stage takes what the one before made in the order of
@@ -19,6 +20,7 @@ mod arms;
 mod bowl;
 mod corners;
 mod ends;
+mod faces;
 mod hinge;
 mod lines;
 mod links;
@@ -97,6 +99,9 @@ pub fn found(points: &Points<'_>, sought: &Sought) -> Result<Vec<Vec<DVec3>>> {
     let joined = corners::join(&mut lines, &|place| points.foot(place).is_some())?;
     let lengths = if points.are_clear() { CLEAR_LENGTHS } else { LENGTHS };
     let mut lines = worth_it(lines, &joined, sought.shortest, lengths);
+    if points.are_clear() {
+        faces::sharpen(&mut lines, points);
+    }
     lines.extend(arms::between_ends(&lines, points, sharp)?);
     Ok(lines.into_iter().map(Line::whole).collect())
 }
