@@ -9,8 +9,8 @@ use crate::analyse::nearest::Search;
 use crate::analyse::sets::Sets;
 use crate::error::Result;
 
-/// A line may be carried on this far, in its size, to a corner at which others are known to meet: by chance two sizes
-/// and more lie between the last sample of an edge of a cube and its corner.
+/// A line may be carried on this far, in its size, to a corner at which others are known to meet, or three do: by chance
+/// two sizes and more lie between the last sample of an edge of a cube and its corner.
 const TO_KNOWN_CORNER: f64 = 4.0;
 
 /// Ends that run the same way or against each other (sine of 15°) lead to no corner.
@@ -89,7 +89,7 @@ pub(super) fn join(lines: &mut [Line], smooth: &impl Fn(DVec3) -> bool) -> Resul
     let others = corners(&joining.loose, AHEAD)?;
     joining.bring(&others);
     known.extend(others);
-    // By chance the samples of all edges may end that far from their corner, to which three lead all the same.
+    // By chance the samples of all edges end far from their corner, to which three lead all the same.
     let mut far = corners(&joining.loose, TO_KNOWN_CORNER)?;
     far.retain(|corner| joining.is_solid(corner));
     joining.bring(&far);
