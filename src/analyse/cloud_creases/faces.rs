@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use super::corners::SOLID;
 use super::lines::Line;
 use super::plane::{Moments, Plane};
-use super::samples::Points;
+use super::samples::{CUTOFF, Points, SIDE_POINTS, STRAY};
 
 /// Points looked at around a corner: some four spacings on each face.
 const LOOKED_AT: usize = 48;
@@ -17,20 +17,11 @@ const LOOKED_AT: usize = 48;
 /// fandisk take 3 % more bytes, and where all places stay that lead to a corner that moves, edges are 2.3 bounds off.
 const BESIDE: f64 = 1.0;
 
-/// A point is of the face whose plane it is nearest to, by this share of the distance from the next one...
+/// A point is of the face whose plane it is nearest to, by this share of the distance from the next one.
 const NEARER: f64 = 0.5;
-
-/// ... and within so many spacings of that...
-const WITHIN: f64 = 0.5;
-
-/// ... beyond so many standard deviations of the noise.
-const STRAY: f64 = 3.0;
 
 /// Times that points are told apart by planes and these fitted to them.
 const ROUNDS: usize = 3;
-
-/// A face with fewer points has no plane of its own.
-const FEWEST: usize = 6;
 
 /// A corner moves by less than this share of the size of its lines.
 const MISS: f64 = 0.4;
@@ -93,7 +84,8 @@ fn sharp(place: DVec3, ways: [DVec3; 3], points: &Points<'_>) -> Option<DVec3> {
     let spacing = points.laid.at(place);
     let around = points.laid.search.around(place.as_vec3(), LOOKED_AT);
     let around: Vec<DVec3> = around.into_iter().map(|n| (points.at(n) - place) / spacing).collect();
-    let within = WITHIN + STRAY * points.noise / spacing;
+    // Planes are off by what lines miss at first, and points scatter besides.
+    let within = CUTOFF + STRAY * points.noise / spacing;
     let between = |n: usize| {
         let normal = ways[n].cross(ways[(n + 1) % ways.len()]).normalize_or_zero();
         Plane { middle: DVec3::ZERO, normal, width: 0.0 }
@@ -121,7 +113,7 @@ fn faces(points: &[DVec3], planes: &[Plane; 3], within: f64) -> Option<[Moments;
             counts[face] += 1;
         }
     }
-    counts.into_iter().all(|count| count >= FEWEST).then_some(faces)
+    counts.into_iter().all(|count| count >= SIDE_POINTS).then_some(faces)
 }
 
 #[cfg(test)]

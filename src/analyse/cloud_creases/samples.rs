@@ -72,10 +72,10 @@ const ABOVE_NOISE: f64 = 13.0;
 const DROWNED: f64 = 1.0;
 
 /// Points farther from either half plane than this many spacings are not explained by it...
-const CUTOFF: f64 = 0.5;
+pub(super) const CUTOFF: f64 = 0.5;
 
 /// ... or than this many standard deviations of the noise.
-const STRAY: f64 = 3.0;
+pub(super) const STRAY: f64 = 3.0;
 
 /// The share of the points that the two half planes must explain.
 const EXPLAINED: f64 = 0.75;
@@ -86,7 +86,7 @@ const SIDE_SHARE: f64 = 0.15;
 
 /// The number of points that either side must hold, so that its plane says more than its points: three
 /// lie on one whatever they are of.
-const SIDE_POINTS: usize = 6;
+pub(super) const SIDE_POINTS: usize = 6;
 
 /// Variance, in squares of the spacing, by which the points of a side must spread along it both
 /// ways: those of half a disc of three spacings do by 0.7.
