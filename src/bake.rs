@@ -91,9 +91,9 @@ pub struct Baked {
 }
 
 /// What a splat without clip curves comes back as, under an error bound in model units, from
-/// whatever will store it; `None` if it cannot be stored. For those who store nothing: `|s, _|
-/// Some(s.clone())`.
-pub type Rounding<'a> = dyn Fn(&Splat, f64) -> Option<Splat> + Sync + 'a;
+/// whatever will store it; `None` if it cannot be stored. The last number is how many times the steps
+/// that it is rounded to are halved at least. For those who store nothing: `|s, _, _| Some(s.clone())`.
+pub type Rounding<'a> = dyn Fn(&Splat, f64, u8) -> Option<Splat> + Sync + 'a;
 
 /// Clip curves that cost whoever stores them less, within an error bound in model units, as far as they will
 /// do. For those who store nothing: `|_, _, _| Ok(())`.
@@ -127,7 +127,7 @@ pub fn bake(
         clock.stage(progress, "look");
         looking.at(&Kept::of(&meant.input, &left_out, discs))?;
     }
-    let round = |splat: &Splat| rounding(splat, max_error);
+    let round = |splat: &Splat, fineness: u8| rounding(splat, max_error, fineness);
     let growing =
         Growing { budget: Budget::new(max_error, options.clips), shapes: options.shapes, round: &round };
     let mut begun = Begun::default();

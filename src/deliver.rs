@@ -34,7 +34,10 @@ pub struct Delivery {
 /// # Errors
 /// Those of [`bake`]; [`Error::Internal`] should the decoded splats break the bound.
 pub fn deliver(input: &Input, options: &Options, progress: &mut dyn Progress) -> Result<Delivery> {
-    let rounding = |splat: &Splat, max_error| Quantizer::new(max_error).snap(splat).ok();
+    let rounding = |splat: &Splat, max_error, fineness| {
+        let quantizer = Quantizer::new(max_error);
+        quantizer.snap_within(splat, fineness).ok()
+    };
     let baked = bake(input, options, &rounding, &format::thrift::save, &mut Onlooker::default(), progress)?;
     let mut clock = Clock::default();
     clock.stage(progress, "encode");

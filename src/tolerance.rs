@@ -33,8 +33,8 @@ pub const FAR_LINE_SHARE: f64 = 0.75;
 
 /// Clip curves follow their feature line this share of the budget outside it, so that no
 /// slit opens between the two surfaces that meet there, each of which may pass the line at a
-/// distance. At corners more acute than 74° they follow it less far outside, so that the tip where two
-/// of them meet, rounded, lies within the budget too.
+/// distance. At corners more acute than 74°, and in notches as narrow, they follow it less far outside, so that the
+/// tip where two of them meet, rounded, lies within the budget too.
 pub const CLIP_OUTSET_SHARE: f64 = 0.5;
 
 /// Share of the budget by which a fitted clip curve may miss the line so moved.

@@ -18,7 +18,10 @@ const STAGES: [&str; 2] = ["sample", "cover"];
 pub fn bench(criterion: &mut Criterion, notes: &mut Notes) -> Result<()> {
     for points in affordable() {
         let input = Input::Cloud(cloud::cloud(points));
-        let rounding = |splat: &_, max_error| Quantizer::new(max_error).snap(splat).ok();
+        let rounding = |splat: &_, max_error, fineness| {
+            let quantizer = Quantizer::new(max_error);
+            quantizer.snap_within(splat, fineness).ok()
+        };
         let mut outcome = Ok(0);
         let options = Options::default();
         let seconds = || match bake(&input, &options, &rounding, &|_, _, _| Ok(()), &mut Blind, &mut Silent) {

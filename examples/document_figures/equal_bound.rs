@@ -241,7 +241,7 @@ fn rows(model: &Model, bound: f64) -> Result<Vec<Vec<String>>> {
     let max_error = bound * diagonal;
     let sheets = Sheets::new(model, LONGEST * diagonal, max_error, POINTS)?;
     let quantizer = Quantizer::new(max_error);
-    let round = |splat: &Splat| quantizer.snap(splat).ok();
+    let round = |splat: &Splat, fineness: u8| quantizer.snap_within(splat, fineness).ok();
     let grower = Grower::new(&sheets.surface, Budget::new(max_error, Clips::Curved), &round);
     let regions = Regions::new(sheets.surface.points.len());
     let bench = Bench { model, bound, sheets: &sheets, grower: &grower, regions: &regions, max_error };

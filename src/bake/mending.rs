@@ -110,7 +110,7 @@ mod tests {
         let sight = |&at: &DVec3| Sight { at, direction: DVec3::NEG_Z, beyond: 0.01 };
         let mut looking = Once(seen.iter().map(sight).collect());
         let options = Options { clips, ..Options::default() };
-        let round = |splat: &Splat, _: f64| Some(splat.clone());
+        let round = |splat: &Splat, _: f64, _: u8| Some(splat.clone());
         let baked = bake(&square, &options, &round, &saving, &mut looking, &mut Silent).unwrap();
         let mut told = told.into_inner().unwrap();
         told.dedup();

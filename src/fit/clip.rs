@@ -38,7 +38,7 @@ impl ClipTolerance {
         self.outset + 2.0 * self.miss
     }
 
-    /// By how much the sides of a convex corner may be moved whose mitre is so many times as long as
+    /// By how much the sides of a corner may be moved whose mitre is so many times as long as
     /// that: rounded, its tip must not lie beyond where a rounded curve may. `None` where they would come
     /// as near to the outline as curves that miss may.
     #[must_use]
@@ -381,6 +381,22 @@ mod tests {
             let (tip, clips) = tip_of_kite(degrees);
             assert!(tip > 0.0 && tip <= TOLERANCE.edge, "{degrees}°: {tip}");
             assert_eq!(clips, if degrees < 35.0 { 5 } else { 4 }, "{degrees}°");
+        }
+    }
+
+    #[test]
+    fn the_border_reaches_into_notches() {
+        let radii = DVec2::splat(2.0);
+        for degrees in [36.0, 40.0, 45.0, 50.0, 55.0, 60.0, 70.0, 90.0, 120.0] {
+            // Around the notch, which is open to the right.
+            let (sin, cos) = libm::sincos(0.5 * f64::to_radians(degrees));
+            let notch = [3.0 * DVec2::new(cos, -sin), DVec2::ZERO, 3.0 * DVec2::new(cos, sin)];
+            let clips = fit(&notch, false, radii, &TOLERANCE).unwrap_or_default();
+            let cuts = |p: DVec2| clips.iter().any(|clip| clip.cuts(p, radii));
+            assert!(clips.len() == 1 && follows(&notch, false, radii, cuts, &TOLERANCE), "{degrees}°");
+            let kept = (0..1000).map(|n| 0.01 * TOLERANCE.outset * f64::from(n));
+            let kept = kept.take_while(|x| !cuts(DVec2::new(*x, 0.0))).last().unwrap_or(f64::NAN);
+            assert!(kept > 0.0 && kept <= TOLERANCE.edge, "{degrees}°: {kept}");
         }
     }
 

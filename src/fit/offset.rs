@@ -22,10 +22,11 @@ pub fn turns_sharply(before: DVec2, after: DVec2) -> bool {
 
 /// The outline with every side moved to its right by `by`, or by less, corners mitred.
 ///
-/// The more acute a convex corner is, the farther out lies its tip. `beside` says by how much its sides
+/// The more acute a corner is, the farther from it lies the mitre's tip, beyond a convex one or in the notch that a
+/// concave one leaves. `beside` says by how much its sides
 /// may be moved, `by` at most, where the mitre is so many times as long as that. Then all of both its
 /// arms, as far as the next convex corners, are moved by no more: what one curve can follow, it still
-/// can. Where `beside` says `None`, the corner becomes two: both sides go on by `by` past the vertex, as
+/// can. Where `beside` says `None`, a convex corner becomes two: both sides go on by `by` past the vertex, as
 /// the caps of strokes do, so that even a side that runs straight back keeps its distance from both.
 /// Repeated points are dropped. A closed outline does not repeat its first point.
 #[must_use]
@@ -114,7 +115,7 @@ fn turns(points: &[DVec2], closed: bool) -> Vec<Turn> {
 fn moves(turns: &[Turn], by: f64, beside: &impl Fn(f64) -> Option<f64>) -> Vec<f64> {
     let count = turns.len();
     let mut moves = vec![by; count];
-    for (n, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.is_convex()) {
+    for (n, turn) in turns.iter().enumerate() {
         let Some(less) = beside(turn.miter()).filter(|less| *less < by) else { continue };
         // Both ways, vertex by vertex, as far as the arms go.
         for (way, side) in [(count - 1, 0), (1, 1)] {
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn an_open_line_s_arms_end_with_it() {
+    fn an_open_line_s_arms_end_with_it_and_in_a_notch_they_are_moved_by_less_too() {
         let line = [(4.0, 2.0), (2.0, 1.0), (0.0, 0.0), (4.0, -2.0)].map(DVec2::from);
         let beside = |miter| Some(if miter > 2.0 { 0.05 } else { 0.1 });
         let moved = outward(&line, false, 0.1, beside);
@@ -190,6 +191,6 @@ mod tests {
         assert!(moved[0].distance(line[0] + 0.05 * up) < 1e-12 && moved.len() == 4, "{moved:?}");
         let back: Vec<DVec2> = line.iter().rev().copied().collect();
         let inside = outward(&back, false, 0.1, beside);
-        assert!(inside[0].distance(back[0] + 0.1 * DVec2::new(1.0, 2.0).normalize()) < 1e-12, "{inside:?}");
+        assert!(inside[0].distance(back[0] + 0.05 * DVec2::new(1.0, 2.0).normalize()) < 1e-12, "{inside:?}");
     }
 }

@@ -81,7 +81,15 @@ impl Quantizer {
     /// # Errors
     /// As [`Self::record`].
     pub fn snap(&self, splat: &Splat) -> Result<Splat> {
-        Ok(self.grids.splat(&self.record(splat)?))
+        self.snap_within(splat, 0)
+    }
+
+    /// The same in steps of a fineness at least: each halves them once more, for a few bits.
+    ///
+    /// # Errors
+    /// As [`Self::record`].
+    pub fn snap_within(&self, splat: &Splat, fineness: u8) -> Result<Splat> {
+        Ok(self.grids.splat(&self.recorded(splat, fineness)?))
     }
 
     /// The whole numbers of a splat.
@@ -90,12 +98,17 @@ impl Quantizer {
     /// [`crate::Error::Usage`] for a splat that is not finite, whose axes are not orthonormal, whose
     /// numbers leave the ranges of the file, or that is too steep to be held within the bound.
     pub fn record(&self, splat: &Splat) -> Result<Record> {
+        self.recorded(splat, 0)
+    }
+
+    /// The same in steps of a fineness at least, but for what is on the grids already.
+    fn recorded(&self, splat: &Splat, fineness: u8) -> Result<Record> {
         check(splat)?;
         let from = if splat.radii.x < splat.radii.y { quarter_turn(splat) } else { splat.clone() };
         if let Some(record) = self.exact(&from)? {
             return Ok(record);
         }
-        let coarsest = if from.clips.is_empty() { 0 } else { CLIPPED_FINENESS };
+        let coarsest = if from.clips.is_empty() { fineness } else { fineness.max(CLIPPED_FINENESS) };
         for fineness in coarsest..=MAX_FINENESS {
             if let Some(record) = self.rounded(&from, fineness)? {
                 // A rarer axis or fineness may have a plainer spelling.

@@ -96,10 +96,16 @@ pub fn candidates(
         let core = core(grower.surface, &candidate, seed, core_share(effort));
         (core, candidate)
     };
+    // Seeds beside that of a splat in finer steps may lead to others that need none.
+    let without_core = |candidate: Candidate| (Vec::new(), candidate);
     let end = |(domain, piece): &(Domain, u32)| {
         let seeds = grower.surface.pieces[*piece as usize];
-        let found = regions.with(|region| settle(grower, domain.clone(), &seeds, *piece, region))?;
-        Some(with_core(found, *piece))
+        let settled =
+            |grower: &Grower, region: &mut Region| settle(grower, domain.clone(), &seeds, *piece, region);
+        regions.with(|region| {
+            let found = settled(grower, region).map(|found| with_core(found, *piece));
+            found.or_else(|| grower.finer().find_map(|finer| settled(&finer, region)).map(without_core))
+        })
     };
     let mut seeds = Seeds::over(grower.surface.pieces.len());
     let mut found = Vec::new();
@@ -112,8 +118,10 @@ pub fn candidates(
     take(&mut seeds, begun.domains.par_iter().map(end).collect());
     while let Some(batch) = seeds.next_batch() {
         let grow = |&piece: &u32| {
-            let found = regions.with(|region| grower.grow(piece, region))?;
-            Some(with_core(found, piece))
+            regions.with(|region| {
+                let found = grower.grow(piece, region).map(|found| with_core(found, piece));
+                found.or_else(|| grower.grow_finer(piece, region).map(without_core))
+            })
         };
         take(&mut seeds, batch.par_iter().map(grow).collect());
         advance(seeds.passed());

@@ -233,7 +233,8 @@ fn cover_rest(grower: &Grower, regions: &Regions, cover: &mut Cover, choice: &mu
         }
         let meshed = grower.surface.spots.is_empty();
         let grow = |piece: u32, region: &mut Region| {
-            let grown = grower.grow(piece, region).or_else(|| grower.grow_broad(piece, region));
+            let grown = grower.grow(piece, region).or_else(|| grower.grow_finer(piece, region));
+            let grown = grown.or_else(|| grower.grow_broad(piece, region));
             let laxer = if meshed { Grower::grow_overhanging } else { Grower::grow_beside_lines };
             grown.or_else(|| laxer(grower, piece, region))
         };

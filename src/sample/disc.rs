@@ -34,7 +34,7 @@ pub fn cut(grower: &Grower, disc: Splat, piece: u32, region: &mut Region) -> Spl
     let clips = lines.curves().unwrap_or_else(|| lines.chords());
     let splat = Splat { clips, ..disc.clone() };
     let keeps = |stored: Splat| !stored.clips.iter().any(|clip| clip.cuts(place, stored.radii));
-    if (grower.round)(&splat).is_some_and(keeps) { splat } else { disc }
+    if grower.rounded(&splat).is_some_and(keeps) { splat } else { disc }
 }
 
 /// The lines that a disc reaches.
@@ -175,7 +175,8 @@ mod tests {
         let cloud = Cloud { positions, ..Cloud::default() };
         let (source, given) = (NormalSource::Estimate, Given::Given(edges));
         let surface = cloud_surface(&cloud, source, given, None, None, None, None).unwrap().surface;
-        let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat| Some(splat.clone()));
+        let grower =
+            Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat, _| Some(splat.clone()));
         let mut region = Region::new(surface.points.len());
         let mut over = |piece: u32| polygon::over(&grower, piece, &mut region).unwrap().splat;
         (0..surface.pieces.len() as u32).map(|piece| (surface.middle(piece).as_vec3(), over(piece))).collect()
@@ -293,7 +294,8 @@ mod tests {
     #[test]
     fn what_the_disc_is_not_near_may_be_cut_away_and_has_to_be() {
         let surface = Surface::default();
-        let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat| Some(splat.clone()));
+        let grower =
+            Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &|splat, _| Some(splat.clone()));
         let mut region = Region::new(2);
         let at = |x: f64, height: f64| DVec3::new(x, 0.0, height * BOUND);
         let chord = ClipCurve::chord(-1.0, 1.0).conic(DVec2::ONE);

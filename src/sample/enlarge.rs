@@ -140,7 +140,7 @@ mod tests {
     fn seeds_beside_a_fold_grow_over_all_that_lies_on_their_side() {
         // No line follows the fold.
         let surface = sheet(|x, _| SLOPE * (x - FOLD).max(0.0));
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(0.004, Clips::Curved), &round);
         let pieces = 0..surface.pieces.len() as u32;
         let beside = pieces.clone().filter(|&piece| surface.middle(piece).x < FOLD).count();

@@ -195,7 +195,7 @@ pub(super) mod tests {
     #[test]
     fn exchanging_makes_covers_cheaper_that_cover_as_much() {
         let surface = waves();
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let regions = Regions::new(surface.points.len());
         let (mut before, mut after) = (0.0, 0.0);
         for bound in [0.002, 0.003, 0.004, 0.006] {

@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn lines_are_followed_where_no_border_passes_and_only_there() {
         let surface = square();
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
         let regions = Regions::new(surface.points.len());
         let grown = regions.with(|region| grower.grow(0, region)).unwrap();

@@ -50,6 +50,9 @@ const COVERED_SHARE: f64 = 0.8;
 /// Principal directions matter where the two sagittas differ by this share of the budget.
 const ROUND_SHARE: f64 = 0.1;
 
+/// How many times steps are halved where splats do not keep the budget otherwise.
+const HALVINGS: [u8; 2] = [1, 2];
+
 /// Why a domain does not keep the budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
@@ -65,9 +68,9 @@ pub enum Stop {
     Bare,
 }
 
-/// What a splat without clip curves comes back as from whatever will store it; `None` if it
-/// cannot be stored.
-pub type Round<'a> = dyn Fn(&Splat) -> Option<Splat> + Sync + 'a;
+/// What a splat without clip curves comes back as from whatever will store it in steps halved at least so many
+/// times; `None` if it cannot be stored.
+pub type Round<'a> = dyn Fn(&Splat, u8) -> Option<Splat> + Sync + 'a;
 
 /// Everything growing needs that stays the same from seed to seed.
 pub struct Grower<'a> {
@@ -87,6 +90,8 @@ pub struct Grower<'a> {
     /// Splats are rounded before they are judged and cut, so that storing them changes
     /// nothing that was judged.
     pub round: &'a Round<'a>,
+    /// How many times the steps of that are halved at least.
+    pub fineness: u8,
 }
 
 /// On a close look this many times as many places are looked at along a clip curve as on a quick one: between
@@ -189,7 +194,8 @@ impl<'a> Grower<'a> {
     /// A grower of all shapes along their principal axes, whose rims stand out nowhere, for splats that curves cut.
     #[must_use]
     pub fn new(surface: &'a Surface, budget: Budget, round: &'a Round<'a>) -> Self {
-        Self { surface, budget, shapes: Shapes::All, axes: Axes::Principal, open: &[], overhang: 0.0, round }
+        let (shapes, axes) = (Shapes::All, Axes::Principal);
+        Self { surface, budget, shapes, axes, open: &[], overhang: 0.0, round, fineness: 0 }
     }
 }
 
@@ -198,6 +204,22 @@ impl Grower<'_> {
     /// not keep the budget.
     pub fn grow(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
         self.grown(Starts::of(self, piece).least(), piece, region)
+    }
+
+    /// The same for a piece that this fails for, in finer steps: where rounding moves what has grown off its lines, it
+    /// would have to be smaller by more than these cost.
+    pub fn grow_finer(&self, piece: u32, region: &mut Region) -> Option<Candidate> {
+        self.finer().find_map(|finer| finer.grow(piece, region))
+    }
+
+    /// Growers of splats that are rounded in finer steps.
+    pub(super) fn finer(&self) -> impl Iterator<Item = Self> {
+        HALVINGS.into_iter().map(|fineness| Self { fineness, ..*self })
+    }
+
+    /// A splat as it comes back from whatever will store it.
+    pub(super) fn rounded(&self, splat: &Splat) -> Option<Splat> {
+        (self.round)(splat, self.fineness)
     }
 
     /// The same for a piece that this fails for, from ellipses along it that are broader than a sliver.
@@ -456,7 +478,7 @@ mod tests {
         let surface = cloud_surface(&cloud, NormalSource::Estimate, given, Some(0.0), None, None, None)
             .unwrap()
             .surface;
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &round);
         let mut region = Region::new(surface.points.len());
         let is_beside = |at: DVec3| at.x < 0.03 && at.y.abs() < 0.4;

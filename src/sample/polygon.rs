@@ -344,7 +344,7 @@ mod tests {
             "{} points stand for all",
             surface.points.len()
         );
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = grower(&surface, &round);
         let mut region = Region::new(surface.points.len());
         for piece in 0..surface.pieces.len() as u32 {
@@ -361,7 +361,7 @@ mod tests {
         let positions = vec![Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.25, 0.45, 0.0)];
         let welded = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
         let surface = split(&welded, &[false; 3]);
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = grower(&surface, &round);
         let reaches = |make: fn(&Grower, u32, &mut Region) -> Option<Candidate>, bounds: f64| {
             let splat = make(&grower, 0, &mut Region::new(3)).unwrap().splat;
@@ -376,7 +376,7 @@ mod tests {
         let mut less_padded = 0;
         // As far as the file's grids may move a splat.
         let moved = |splat: &Splat| splat.center + QUANTIZE_SHARE * BOUND * splat.axes.x_axis;
-        let round = |splat: &Splat| Some(Splat { center: moved(splat), ..splat.clone() });
+        let round = |splat: &Splat, _: u8| Some(Splat { center: moved(splat), ..splat.clone() });
         for n in 0..300_u16 {
             let (length, width, skew) = (f32::from(n % 10), f32::from(n / 10 % 6), f32::from(n / 60));
             let (x, y) = (0.1 + 0.1 * length, 0.02 + 0.06 * width);
@@ -418,7 +418,7 @@ mod tests {
         let marked: Vec<bool> =
             edges.edges.iter().map(|edge| cut && edge.ends.iter().all(|end| end % 5 == 2)).collect();
         let surface = split(&welded, &marked);
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = grower(&surface, &round);
         let mut region = Region::new(surface.points.len());
         // Before the fold, with a side on it.
@@ -449,7 +449,7 @@ mod tests {
         let surface = split(&welded, &vec![false; Edges::of(&welded.triangles).edges.len()]);
         // As far as the file's grids may widen a splat.
         let wider = |splat: &Splat| splat.radii + QUANTIZE_SHARE * BOUND;
-        let round = |splat: &Splat| Some(Splat { radii: wider(splat), ..splat.clone() });
+        let round = |splat: &Splat, _: u8| Some(Splat { radii: wider(splat), ..splat.clone() });
         let grower = grower(&surface, &round);
         let mut region = Region::new(surface.points.len());
         let splat = over(&grower, 1, &mut region).unwrap().splat;
@@ -465,7 +465,7 @@ mod tests {
         let positions = vec![Vec3::ZERO, Vec3::new(0.0, 0.0, 3.0), Vec3::new(0.0, 0.0, 9.0)];
         let welded = Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() };
         let surface = split(&welded, &vec![false; Edges::of(&welded.triangles).edges.len()]);
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let splat = over(&grower(&surface, &round), 0, &mut Region::new(surface.points.len())).unwrap().splat;
         for corner in surface.pieces[0] {
             let local = splat.to_local(surface.point(corner));

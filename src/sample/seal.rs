@@ -140,7 +140,7 @@ pub(super) mod tests {
 
     /// Grows nothing, since nothing can be stored.
     pub(in crate::sample) fn fruitless(surface: &Surface) -> Grower<'_> {
-        Grower::new(surface, Budget::new(0.01, Clips::Curved), &|_| None)
+        Grower::new(surface, Budget::new(0.01, Clips::Curved), &|_, _| None)
     }
 
     /// One point of a cloud, at the origin, that stands for 0.1 around it, joined to two that no splat reaches
@@ -193,7 +193,7 @@ pub(super) mod tests {
     #[test]
     fn where_none_can_be_grown_a_piece_gets_one_of_its_own() {
         let surface = lone_spot();
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
         assert!(grown(&grower, 0, &mut Region::new(3)).is_none());
         let mut cover = cover(&[(3.0, 1.0)]);
@@ -208,7 +208,7 @@ pub(super) mod tests {
             ..splat.clone()
         };
         let surface = lone_spot();
-        let round = |splat: &Splat| Some(cut(splat, 0.2));
+        let round = |splat: &Splat, _: u8| Some(cut(splat, 0.2));
         let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
         let made = |_: &Grower<'_>, _: u32, _: &mut Region| {
             let whole = candidate(&[0]);

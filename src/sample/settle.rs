@@ -17,6 +17,9 @@ use crate::tolerance::FIT_SHARE;
 /// A domain that does not hold when rounded shrinks by this factor, so many times.
 const SHRINK: (f64, usize) = (0.95, 10);
 
+/// Times in a row that what is so fitted to less may fail to keep the budget.
+const SKIPS: usize = 3;
+
 /// A splat is padded by the first of these many times the least padding with which it keeps the budget: rays that
 /// pass between two splats at a slant need the more of either the flatter they are. Along rays that no bake looks
 /// along, three times leaves 65 holes where twice left 110 (five models, 156 views each).
@@ -53,7 +56,7 @@ impl Candidate {
     pub(super) fn stored(mut self, grower: &Grower) -> Self {
         if !self.splat.clips.is_empty() {
             // What was rounded before it was cut is on the grids, so that only the cuts are rounded.
-            self.splat = (grower.round)(&self.splat).unwrap_or(self.splat);
+            self.splat = grower.rounded(&self.splat).unwrap_or(self.splat);
         }
         self
     }
@@ -92,7 +95,9 @@ pub(super) fn settle(
                 return found;
             }
         }
-        domain = grower.attempt(&domain.pose, domain.radii * shrink, seeds, region).ok()?;
+        let smaller = std::iter::successors(Some(shrink * domain.radii), |radii| Some(shrink * *radii));
+        domain =
+            smaller.take(SKIPS).find_map(|radii| grower.attempt(&domain.pose, radii, seeds, region).ok())?;
     }
     None
 }
@@ -112,7 +117,7 @@ fn cylinder(pose: &Pose, radii: DVec2, curvature: DVec2, fit: f64) -> Option<(Po
 
 /// A splat as it will be stored, not yet cut or coloured.
 pub(super) fn rounded(grower: &Grower, pose: &Pose, radii: DVec2, curvature: DVec2) -> Option<Splat> {
-    (grower.round)(&Splat {
+    grower.rounded(&Splat {
         center: pose.center,
         axes: pose.axes,
         radii,
@@ -148,7 +153,7 @@ fn finish(
     }
     let trusted = grower.budget.trusted(splat.radii - more);
     // Points strewn about a line may lie as near to a curve as that is rounded.
-    let stored = if meshed { None } else { Some((grower.round)(&splat)?.clips) };
+    let stored = if meshed { None } else { Some(grower.rounded(&splat)?.clips) };
     let clips = stored.as_ref().unwrap_or(&splat.clips);
     let conics: Vec<Conic> = clips.iter().map(|clip| clip.conic(splat.radii)).collect();
     let domain = Covering { grower, splat: &splat, conics, trusted };
@@ -306,7 +311,7 @@ mod tests {
                 .unwrap()
                 .surface;
         // As if files kept the ends of curves to a twentieth of a radian.
-        let coarse = |splat: &Splat| {
+        let coarse = |splat: &Splat, _: u8| {
             let angle = |alpha: f64| (20.0 * alpha).round() / 20.0;
             let stored = |clip: &ClipCurve| ClipCurve {
                 alpha1: angle(clip.alpha1),
@@ -322,7 +327,7 @@ mod tests {
         let cut = grown.iter().filter(|candidate| !candidate.splat.clips.is_empty());
         assert!(cut.count() > 20, "few of {} are cut", grown.len());
         for candidate in grown {
-            let stored = coarse(&candidate.splat).unwrap();
+            let stored = coarse(&candidate.splat, 0).unwrap();
             for piece in candidate.pieces {
                 let uv = stored.to_local(surface.middle(piece)).truncate();
                 assert!(!stored.clips.iter().any(|clip| clip.cuts(uv, stored.radii)), "{uv}");

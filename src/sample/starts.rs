@@ -122,7 +122,7 @@ mod tests {
         let cells = (0..count - 1).flat_map(|n| [[n, n + 1, n + count], [n + 1, n + count + 1, n + count]]);
         let welded = Welded { positions, triangles: cells.collect(), ..Welded::default() };
         let surface = split(&welded, &vec![false; 3 * welded.triangles.len()]);
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(f64::from(bound), Clips::Curved), &round);
         let regions = Regions::new(surface.points.len());
         let grown = candidates(&grower, &regions, &Begun::default(), 1, |_| ());

@@ -82,8 +82,9 @@ mod tests {
     #[test]
     fn splats_shrink_to_their_shares_and_all_stays_covered() {
         let surface = waves();
-        let grower =
-            Grower::new(&surface, Budget::new(0.004, Clips::Curved), &|splat: &Splat| Some(splat.clone()));
+        let grower = Grower::new(&surface, Budget::new(0.004, Clips::Curved), &|splat: &Splat, _: u8| {
+            Some(splat.clone())
+        });
         let regions = Regions::new(surface.points.len());
         let candidates = candidates(&grower, &regions, &Begun::default(), 1, |_| ());
         let count = candidates.len();

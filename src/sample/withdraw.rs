@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn where_all_show_those_that_show_least_stay() {
         let surface = lone_spot();
-        let round = |splat: &Splat| Some(splat.clone());
+        let round = |splat: &Splat, _: u8| Some(splat.clone());
         let grower = Grower::new(&surface, Budget::new(0.01, Clips::Curved), &round);
         let withdrawn =
             |cover: &mut Cover, places: &[f64]| cover.withdraw(&grower, &Regions::new(3), &beside(places));

@@ -40,11 +40,19 @@ fn lines_that_one_curve_cannot_follow_keep_every_bound() {
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
 }
 
+/// Bakes a shape of few large facets: it has no fault, and takes few splats.
+fn check_facets((shape, facets): (Shape, usize)) {
+    let (faults, splats) = check(shape);
+    assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+    assert!(splats <= SPLATS_A_FACET * facets, "{splats} splats for {facets} facets");
+}
+
 #[test]
 fn ridges_between_a_few_large_facets_are_found() {
-    for (shape, facets) in shapes::fans() {
-        let (faults, splats) = check(shape);
-        assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
-        assert!(splats <= SPLATS_A_FACET * facets, "{splats} splats for {facets} facets");
-    }
+    shapes::fans().into_iter().for_each(check_facets);
+}
+
+#[test]
+fn notches_take_no_more_splats_than_facets_do() {
+    check_facets(shapes::star());
 }

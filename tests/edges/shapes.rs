@@ -75,6 +75,21 @@ fn slot() -> Shape {
     prism("a slot", 0.3, |z| polygon(&outline, z))
 }
 
+/// Tips of the star.
+const TIP_COUNT: u32 = 12;
+
+/// A prism over a star, with notches of 60° between tips of 30°, and of how many facets it is.
+pub fn star() -> (Shape, usize) {
+    let half_tip = 15.0_f64.to_radians();
+    let inner = 0.25 / libm::cos(half_tip);
+    let corners = (0..2 * TIP_COUNT).map(|n| {
+        let radius = if n.is_multiple_of(2) { 0.5 } else { inner };
+        (radius * DVec2::from_angle(TAU * f64::from(n) / f64::from(2 * TIP_COUNT))).into()
+    });
+    let corners: Vec<(f64, f64)> = corners.collect();
+    (prism("notches of a star", 0.1, |z| polygon(&corners, z)), corners.len() + 2)
+}
+
 /// The arc of a radius from one point to another, to the left or the right of the way.
 fn arc(a: DVec2, b: DVec2, z: f64, radius: f64, left: bool) -> Curve {
     let side = if left { 1.0 } else { -1.0 };
