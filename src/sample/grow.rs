@@ -50,7 +50,8 @@ const COVERED_SHARE: f64 = 0.8;
 /// Principal directions matter where the two sagittas differ by this share of the budget.
 const ROUND_SHARE: f64 = 0.1;
 
-/// How many times steps are halved where splats do not keep the budget otherwise.
+/// How many times steps are halved where splats do not keep the budget otherwise. With the second a threaded bolt takes
+/// 2 to 6 % fewer bytes than with the first alone; with a third most models take 1 to 2 % more.
 const HALVINGS: [u8; 2] = [1, 2];
 
 /// Why a domain does not keep the budget.

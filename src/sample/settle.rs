@@ -17,7 +17,8 @@ use crate::tolerance::FIT_SHARE;
 /// A domain that does not hold when rounded shrinks by this factor, so many times.
 const SHRINK: (f64, usize) = (0.95, 10);
 
-/// Times in a row that what is so fitted to less may fail to keep the budget.
+/// Sizes in a row at which what is fitted anew may fail to keep the budget: where one does, the next may not. Stopping at
+/// the first, four of seven models take 1 to 3 % more bytes and the others as many.
 const SKIPS: usize = 3;
 
 /// A splat is padded by the first of these many times the least padding with which it keeps the budget: rays that
