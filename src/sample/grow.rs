@@ -458,8 +458,11 @@ mod tests {
     use crate::analyse::cloud_normals::NormalSource;
     use crate::analyse::cloud_surface::{Lines, cloud_surface};
     use crate::analyse::planted::random;
+    use crate::analyse::split::split;
+    use crate::analyse::weld::Welded;
     use crate::model::cloud::Cloud;
     use crate::model::polyline::nearest_on;
+    use glam::Vec3;
 
     #[test]
     fn splats_beside_lines_that_stray_from_the_faces_are_still_cut_along_them() {
@@ -500,6 +503,24 @@ mod tests {
             }
         }
         assert!(grown > 10, "{grown} grown that otherwise are not");
+    }
+
+    #[test]
+    fn what_rounding_moves_off_its_lines_grows_in_finer_steps() {
+        const BOUND: f64 = 0.004;
+        let positions = vec![Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.25, 0.45, 0.0)];
+        let surface =
+            split(&Welded { positions, triangles: vec![[0, 1, 2]], ..Welded::default() }, &[false; 3]);
+        // Lines may be passed at a third of the bound.
+        let off = |fineness: u8| 0.8 * BOUND / f64::from(1 << fineness);
+        let round = |splat: &Splat, fineness: u8| {
+            Some(Splat { center: splat.center.with_z(off(fineness)), ..splat.clone() })
+        };
+        let grower = Grower::new(&surface, Budget::new(BOUND, Clips::Curved), &round);
+        let mut region = Region::new(surface.points.len());
+        assert!(grower.grow(0, &mut region).is_none());
+        let found = grower.grow_finer(0, &mut region).unwrap();
+        assert_eq!((found.splat.center.z.to_bits(), found.pieces), (off(2).to_bits(), vec![0]));
     }
 
     #[test]
