@@ -54,7 +54,7 @@ fn mesh(points: &[DVec3], triangles: &[[u32; 3]]) -> Mesh {
     let frame = Frame::of_box(min, max);
     let positions: Vec<Vec3> = points.iter().map(|&p| frame.to_model(p).as_vec3()).collect();
     let vertices = Cloud { frame, positions, ..Cloud::default() };
-    Mesh { vertices, triangles: triangles.to_vec(), dropped: 0 }
+    Mesh { vertices, triangles: triangles.to_vec(), ..Mesh::default() }
 }
 
 /// The mesh with every point in input units mapped.

@@ -39,7 +39,7 @@ fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     let frame = Frame::of_box(low, high);
     let positions: Vec<Vec3> = positions.into_iter().map(|p| frame.to_model(p).as_vec3()).collect();
-    Mesh { vertices: Cloud { frame, positions, ..Cloud::default() }, triangles, dropped: 0 }
+    Mesh { vertices: Cloud { frame, positions, ..Cloud::default() }, triangles, ..Mesh::default() }
 }
 
 /// A closed cylinder of radius 1 and height 2.
@@ -126,7 +126,7 @@ fn sharp_normals_and_flat_faces_keep_facets_as_they_are() {
     let normals = corners.chunks_exact(3).flat_map(|c| [normal(c); 3]).collect();
     let triangles = (0..mesh.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
     let vertices = Cloud { positions: corners, normals, ..mesh.vertices.clone() };
-    let flat = Mesh { vertices, triangles, dropped: 0 };
+    let flat = Mesh { vertices, triangles, ..Mesh::default() };
     let auto = bake(&flat, Meaning::Auto);
     assert!(auto.baked.stand_in.is_none(), "normals that differ from face to face mean facets");
     // Even where it is asked for, nothing bends: only the pieces lie otherwise.

@@ -34,7 +34,7 @@ fn cube() -> Input {
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let vertices = Cloud { positions: (0..8).map(corner).collect(), ..Cloud::default() };
-    Input::Mesh(Mesh { vertices, triangles, dropped: 0 })
+    Input::Mesh(Mesh { vertices, triangles, ..Mesh::default() })
 }
 
 fn fixture(name: &str) -> Input {

@@ -72,7 +72,8 @@ pub fn smoothed(mesh: &Mesh, features: &Features, smoothing: &Smoothing) -> Opti
         colors: fine.colors,
         ..Cloud::default()
     };
-    Some(Smoothed { mesh: Mesh { vertices, triangles: fine.triangles, dropped: mesh.dropped }, lines, found })
+    let mesh = Mesh { vertices, triangles: fine.triangles, dropped: mesh.dropped, turned: mesh.turned };
+    Some(Smoothed { mesh, lines, found })
 }
 
 /// Whether a mesh stands for a smooth surface: the file's normals go on over most of the length of

@@ -126,7 +126,7 @@ mod tests {
         };
         let vertices = Cloud { positions: (0..8).map(corner).collect(), ..Cloud::default() };
         let diagonal = diagonal(&vertices.positions);
-        let bar = Mesh { vertices, triangles: vec![[0, 1, 2], [1, 2, 3]], dropped: 0 };
+        let bar = Mesh { vertices, triangles: vec![[0, 1, 2], [1, 2, 3]], ..Mesh::default() };
         let options = Options { max_error: MaxError::Relative(1e-3), holes, ..Options::default() };
         model_error(&options, &Input::Mesh(bar)).unwrap() / diagonal
     }

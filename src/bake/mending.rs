@@ -101,7 +101,7 @@ mod tests {
     fn baked(clips: Clips, seen: &[DVec3]) -> (Baked, Vec<usize>) {
         let positions = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
         let vertices = Cloud { positions: positions.to_vec(), ..Cloud::default() };
-        let square = Input::Mesh(Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], dropped: 0 });
+        let square = Input::Mesh(Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() });
         let told = Mutex::new(Vec::new());
         let saving = |splats: &mut [Splat], _: f64, _: &mut dyn Trial| {
             told.lock().unwrap().push(splats.len());

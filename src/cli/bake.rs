@@ -210,6 +210,9 @@ impl Arguments {
         if let Some(note) = self.narrowed_note(&report) {
             notes.note(&note);
         }
+        if let Some(input) = report.input.as_ref().filter(|input| input.turned_triangles > 0) {
+            notes.note(&turned_note(input));
+        }
         if let Some(input) = report.input.as_ref().filter(|input| input.outliers > 0) {
             notes.note(&outliers_note(input));
         }
@@ -271,9 +274,9 @@ impl Arguments {
 
     fn facts(&self, input: &Input, options: &Options, baked: &Baked) -> report::Input {
         let cloud = input.cloud();
-        let (kind, triangles, dropped_triangles) = match input {
-            Input::Mesh(mesh) => ("mesh", mesh.triangles.len(), mesh.dropped),
-            Input::Cloud(_) => ("cloud", 0, 0),
+        let (kind, triangles, dropped_triangles, turned_triangles) = match input {
+            Input::Mesh(mesh) => ("mesh", mesh.triangles.len(), mesh.dropped, mesh.turned),
+            Input::Cloud(_) => ("cloud", 0, 0, 0),
         };
         let line_segments = match &options.edges {
             Edges::Given(lines) => Some(lines.segments() as u64),
@@ -288,6 +291,7 @@ impl Arguments {
             triangles: triangles as u64,
             dropped_points: cloud.dropped as u64,
             dropped_triangles: dropped_triangles as u64,
+            turned_triangles: turned_triangles as u64,
             outliers: baked.left_out.len() as u64,
             open_places: open_places(&baked.open_places, &cloud.frame),
             open_place_count: baked.open_places.len() as u64,
@@ -356,6 +360,14 @@ fn open_places(found: &[OpenPlace], frame: &Frame) -> Vec<report::OpenPlace> {
 fn sparse(found: &Sparse, frame: &Frame, diagonal: f64) -> report::Sparse {
     let worst = frame.to_input(found.worst).into();
     report::Sparse { points: found.points as u64, worst, by: found.by / diagonal }
+}
+
+fn turned_note(input: &report::Input) -> String {
+    let report::Input { turned_triangles, triangles, .. } = input;
+    format!(
+        "{turned_triangles} of {triangles} triangles faced the other way than most of the surface they belong to \
+         and were turned"
+    )
 }
 
 fn outliers_note(input: &report::Input) -> String {

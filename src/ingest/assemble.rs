@@ -3,11 +3,12 @@
 use glam::Vec3;
 
 use super::Input;
+use super::facing::face_alike;
 use super::positions::{Extent, Positions};
 use super::source::Source;
 use crate::error::Result;
 use crate::model::frame::{EXPONENT_LIMIT, Frame};
-use crate::model::{cloud::Cloud, mesh::Mesh};
+use crate::model::{cloud::Cloud, mesh::Mesh, places};
 
 /// Greatest half size of a bounding box: below `2^EXPONENT_LIMIT`, so that every point comes to
 /// lie within `[-1, 1]`.
@@ -48,7 +49,8 @@ pub(super) fn assemble(source: &Source, mut geometry: Geometry) -> Result<Input>
         dropped: all - extent.finite,
     };
     let Some(mut triangles) = geometry.triangles else { return Ok(Input::Cloud(vertices)) };
-    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    let (places, _) = places::numbered(&vertices.positions);
+    triangles.retain(|&triangle| is_triangle(triangle.map(|v| places[v as usize])));
     let dropped = faces.unwrap_or(0) - triangles.len();
     if triangles.is_empty() {
         return Err(source.whole(format!(
@@ -56,7 +58,13 @@ pub(super) fn assemble(source: &Source, mut geometry: Geometry) -> Result<Input>
              mend the faces or delete them to use the points as a cloud"
         )));
     }
-    Ok(Input::Mesh(Mesh { vertices, triangles, dropped }))
+    let turned = face_alike(&vertices.positions, &places, &mut triangles);
+    Ok(Input::Mesh(Mesh { vertices, triangles, dropped, turned }))
+}
+
+/// Whether a triangle has three corners.
+fn is_triangle([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
 }
 
 fn frame(source: &Source, extent: &Extent) -> Result<Frame> {

@@ -5,7 +5,7 @@
 //! 3. `ply`, `obj`, `off` or `gltf` decodes to `assemble::Geometry`: 64-bit positions,
 //!    attributes, triangles with indices that are in range.
 //! 4. `assemble` drops what is not finite, takes the bounding box in 64 bits and rounds to
-//!    model units.
+//!    model units; `facing` turns triangles that face the other way than their neighbours.
 //!
 //! Nothing is allocated from a number in a file before that number was compared with the
 //! bytes that are there.
@@ -15,6 +15,7 @@ pub(crate) mod chain;
 mod color;
 mod detect;
 mod faces;
+mod facing;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod obj;

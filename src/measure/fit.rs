@@ -16,7 +16,7 @@ use crate::render::input::Model;
 pub const REACH: f64 = 4.0;
 
 /// The points the bound holds for: those of a cloud but for the ones `left_out`, which ascend,
-/// and those of a mesh that its triangles use.
+/// and those of a mesh that its triangles use; one with two corners at one place is none.
 ///
 /// Each place counts once: how often an input repeats a point, along seams say, tells nothing of
 /// the surface.
@@ -30,8 +30,11 @@ pub fn points(model: Model<'_>, left_out: &[u32]) -> Vec<Vec3> {
         }
         Model::Mesh(mesh) => {
             let mut used = vec![false; mesh.vertices.positions.len()];
-            for &vertex in mesh.triangles.as_flattened() {
-                used[vertex as usize] = true;
+            for (n, triangle) in mesh.triangles.iter().enumerate() {
+                let [a, b, c] = mesh.corners(n);
+                if a != b && b != c && c != a {
+                    triangle.iter().for_each(|&vertex| used[vertex as usize] = true);
+                }
             }
             mesh.vertices.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| *p).collect()
         }
@@ -128,7 +131,9 @@ mod tests {
         let cloud = Cloud { positions: places.map(Vec3::from_array).to_vec(), ..Cloud::default() };
         assert_eq!(points(Model::Cloud(&cloud), &[]).len(), 4);
         assert!(!points(Model::Cloud(&cloud), &[1, 4]).contains(&Vec3::X));
-        let mesh = Mesh { vertices: cloud, triangles: vec![[0, 1, 3], [2, 3, 1]], dropped: 0 };
+        // The last has two corners at one place.
+        let triangles = vec![[0, 1, 3], [2, 3, 1], [0, 2, 4]];
+        let mesh = Mesh { vertices: cloud, triangles, ..Mesh::default() };
         let used = points(Model::Mesh(&mesh), &[]);
         assert_eq!((used.len(), used.contains(&Vec3::splat(0.2))), (3, false));
     }

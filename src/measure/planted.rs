@@ -35,7 +35,7 @@ pub(super) fn flat(center: DVec3, radii: DVec2, clips: Vec<ClipCurve>) -> Splat 
 /// A mesh of the default frame.
 pub(super) fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     let positions = positions.into_iter().map(DVec3::as_vec3).collect();
-    Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, dropped: 0 }
+    Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, ..Mesh::default() }
 }
 
 /// The surface that a cloud tells of, without lines and without points that belong to none.

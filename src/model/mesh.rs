@@ -7,7 +7,8 @@ use super::cloud::Cloud;
 /// Triangles over the points of a [`Cloud`].
 ///
 /// Vertices are as in the file: seams may repeat a position. Polygons are fanned into
-/// triangles; faces that use a dropped vertex, or one vertex twice, are left out and counted.
+/// triangles; faces that use a dropped vertex, or one place twice, are left out and counted. Faces that
+/// join two by two at an edge face alike: those that did not were turned and counted.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// The vertices and their attributes.
@@ -16,6 +17,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Triangles left out on reading because they are degenerate or used a dropped vertex.
     pub dropped: usize,
+    /// Triangles turned on reading because they faced the other way than most of the surface they belong to.
+    pub turned: usize,
 }
 
 impl Mesh {

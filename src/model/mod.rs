@@ -11,6 +11,7 @@ pub mod mesh;
 pub mod neighbours;
 pub mod outlook;
 pub mod partner;
+pub mod places;
 pub mod polyline;
 pub mod sight;
 pub mod splat;

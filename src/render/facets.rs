@@ -147,7 +147,7 @@ mod tests {
         let rim = rim.map(|(sin, cos)| DVec3::new(cos, sin, 0.1 * cos).as_vec3());
         let positions = std::iter::once(Vec3::ZERO).chain(rim).collect();
         let triangles = (0..SIDES).map(|n| [0, 1 + n, 1 + (n + 1) % SIDES]).collect();
-        Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, dropped: 0 }
+        Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, ..Mesh::default() }
     }
 
     #[test]

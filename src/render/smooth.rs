@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::model::mesh::Mesh;
+use crate::model::places;
 
 /// A vertex with more corners than this keeps its faces' own normals: the work grows with
 /// the square, and the tip of such a fan has no normal worth the wait.
@@ -56,7 +57,7 @@ struct Fans {
 
 impl Fans {
     fn of(mesh: &Mesh) -> Self {
-        let (position, count) = merge(&mesh.vertices.positions);
+        let (position, count) = places::numbered(&mesh.vertices.positions);
         let mut starts = vec![0; count + 1];
         for vertex in mesh.triangles.as_flattened() {
             starts[position[*vertex as usize] as usize + 1] += 1;
@@ -88,21 +89,4 @@ impl Fans {
 fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let (b, c) = (b - a, c - a);
     libm::atan2(b.cross(c).length(), b.dot(c))
-}
-
-/// Numbers the distinct positions: the number of each vertex, and how many there are.
-fn merge(positions: &[Vec3]) -> (Vec<u32>, usize) {
-    // Adding 0 turns -0 into 0: they are one place.
-    let key = |n: u32| (positions[n as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.par_sort_unstable_by_key(|&n| (key(n), n));
-    let mut number = vec![0; positions.len()];
-    let mut count = 0;
-    for (n, &vertex) in order.iter().enumerate() {
-        if n > 0 && key(order[n - 1]) != key(vertex) {
-            count += 1;
-        }
-        number[vertex as usize] = count as u32;
-    }
-    (number, count + usize::from(!order.is_empty()))
 }

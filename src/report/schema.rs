@@ -26,6 +26,9 @@ pub struct Input {
     pub dropped_points: u64,
     /// Triangles left out because they are degenerate or used a dropped point.
     pub dropped_triangles: u64,
+    /// Triangles turned because they faced the other way than most of the surface they belong to.
+    #[serde(default)]
+    pub turned_triangles: u64,
     /// Points of a cloud that belong to no surface and were left out: the bound does not hold for them.
     #[serde(default)]
     pub outliers: u64,

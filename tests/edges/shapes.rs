@@ -38,7 +38,7 @@ fn shape(name: &str, surface: &Surface) -> Shape {
     let frame = Frame::of_box(min, max);
     let positions: Vec<Vec3> = points.iter().map(|&p| frame.to_model(p).as_vec3()).collect();
     let vertices = Cloud { frame, positions, ..Cloud::default() };
-    let mesh = Mesh { vertices, triangles: surface.triangles.clone(), dropped: 0 };
+    let mesh = Mesh { vertices, triangles: surface.triangles.clone(), ..Mesh::default() };
     Shape { name: name.to_owned(), input: Input::Mesh(mesh), edges: Edges::Auto }
 }
 

@@ -12,7 +12,11 @@ pub fn mesh(points: &[DVec3], triangles: Vec<[u32; 3]>) -> Input {
     let max = points.iter().copied().reduce(DVec3::max).unwrap();
     let frame = Frame::of_box(min, max);
     let positions: Vec<Vec3> = points.iter().map(|&p| frame.to_model(p).as_vec3()).collect();
-    Input::Mesh(Mesh { vertices: Cloud { frame, positions, ..Cloud::default() }, triangles, dropped: 0 })
+    Input::Mesh(Mesh {
+        vertices: Cloud { frame, positions, ..Cloud::default() },
+        triangles,
+        ..Mesh::default()
+    })
 }
 
 fn p(x: f64, y: f64, z: f64) -> DVec3 {
@@ -128,6 +132,14 @@ fn cone() -> Input {
     mesh(&points, (0..64).map(|n| [n, (n + 1) % 64, 64]).collect())
 }
 
+/// A cube, and a triangle with two corners at one place.
+fn cube_and_a_line() -> Input {
+    let (mut points, mut faces) = cube_at(DVec3::ZERO, 0);
+    points.extend([p(0.5, 0.5, 2.0), p(0.0, 0.0, 1.5), p(0.0, 0.0, 1.5)]);
+    faces.push([8, 9, 10]);
+    mesh(&points, faces)
+}
+
 /// All cases, named.
 pub fn all() -> Vec<(&'static str, Input)> {
     let square = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 0.0)];
@@ -149,6 +161,7 @@ pub fn all() -> Vec<(&'static str, Input)> {
         ("a spike", spike()),
         ("a cone", cone()),
         ("a cube", cube()),
+        ("a cube and a line", cube_and_a_line()),
         ("1000 random triangles", soup(1000)),
     ]
 }

@@ -10,7 +10,7 @@ use qsplat::render::{Settings, Show};
 use crate::scenes;
 
 fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
-    Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, dropped: 0 }
+    Mesh { vertices: Cloud { positions, ..Cloud::default() }, triangles, ..Mesh::default() }
 }
 
 /// A unit cube, its eight vertices shared by all faces.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod facing;
 #[cfg(feature = "gltf")]
 mod gltf;
 #[cfg(feature = "gltf")]

@@ -7,9 +7,9 @@ use super::{cloud, edges, input_positions, mesh, message};
 #[test]
 fn polygons_indices_and_joined_lines() {
     let file = "# a pyramid \\\nv 0 0 0\nv 2 0 0 1.0\nv 2 2 0 # corner\nv 0 2 0\nvt 0 0\nvn 0 0 1\n\
-        g caf\u{e9}#1\nf 1/1/1 2/1 3//1 \\\n 4\nv 1 1 4\nf -1 -5 -4\nf 6 1 5\nv 1 1 -4\nunknown 1 2 3\n";
+        g caf\u{e9}#1\nf 1/1/1 2/1 3//1 \\\n 4\nv 1 1 4\nf -1 -4 -5\nf 6 5 1\nv 1 1 -4\nunknown 1 2 3\n";
     let mesh = mesh("a.obj", file.as_bytes());
-    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 0, 1], [5, 0, 4]]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 1, 0], [5, 4, 0]]);
     let expected = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 1, 4], [1, 1, -4]];
     assert_eq!(input_positions(&mesh.vertices), expected.map(|p| DVec3::from_array(p.map(f64::from))));
 }

@@ -29,7 +29,7 @@ pub(in crate::measure) fn plane(height: f32) -> Mesh {
     let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
     let positions = corners.map(|[x, y]| Vec3::new(x, y, height)).to_vec();
     let vertices = Cloud { frame: Frame::default(), positions, ..Cloud::default() };
-    Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], dropped: 0 }
+    Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
 }
 
 /// Squares that tile that plane: discs cut along the four sides of the square in them.
