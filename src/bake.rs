@@ -128,8 +128,8 @@ pub fn bake(
         looking.at(&Kept::of(&meant.input, &left_out, discs))?;
     }
     let round = |splat: &Splat, fineness: u8| rounding(splat, max_error, fineness);
-    let growing =
-        Growing { budget: Budget::new(max_error, options.clips), shapes: options.shapes, round: &round };
+    let budget = Budget::new(max_error, options.clips).moved_by(features.sewn.moved);
+    let growing = Growing { budget, shapes: options.shapes, round: &round };
     let mut begun = Begun::default();
     if let Some(marked) = marked {
         clock.stage(progress, "scout");

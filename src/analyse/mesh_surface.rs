@@ -1,4 +1,4 @@
-//! From a mesh to its surface: weld, find or match feature edges, refine, cut.
+//! From a mesh to its surface: weld, sew, find or match feature edges, refine, cut.
 
 use glam::DVec3;
 
@@ -9,6 +9,7 @@ use super::edges::Edges;
 use super::given_lines::{self, Matched, Meant};
 use super::line_ends::carried;
 use super::refine::{Fineness, Refined, Side, refine};
+use super::sew::{CRACK_SHARE, Sewn, sew};
 use super::split::split;
 use super::surface::Surface;
 use super::weld::{Welded, weld};
@@ -43,6 +44,8 @@ pub struct Found {
     pub feature_edges: usize,
     /// What became of given lines.
     pub matched: Option<Matched>,
+    /// What was sewn where cracks are narrow beside the bound.
+    pub sewn: Sewn,
 }
 
 /// How a mesh becomes a surface.
@@ -92,8 +95,9 @@ impl Marked {
     /// Welds a mesh, finds or matches its feature edges and refines it; also what was found.
     #[must_use]
     pub fn of(mesh: &Mesh, features: &Features, making: &Making<'_>) -> (Self, Found) {
-        let welded = weld(mesh);
-        let (marked, mut found) = mark(&welded, features);
+        let (welded, sewn) = sewn(mesh, making.worth.max_error);
+        let (marked, found) = mark(&welded, features);
+        let mut found = Found { sewn, ..found };
         let bends = bends(&welded, &marked);
         let too_long =
             |side: &Side| side.way.length() > making.longest(bends[side.face as usize], side.at_line);
@@ -139,7 +143,7 @@ impl Marked {
 pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<Vec<DVec3>> {
     let (welded, marked, given) = match features {
         Features::Given { segments, beside } => {
-            let welded = weld(mesh);
+            let (welded, _) = sewn(mesh, making.worth.max_error);
             let edges = Edges::of(&welded.triangles);
             let given = given_lines::mark(&welded, &edges, segments, *beside).lines;
             (welded, vec![false; edges.edges.len()], given)
@@ -152,6 +156,13 @@ pub fn cut_lines(mesh: &Mesh, features: &Features, making: &Making<'_>) -> Vec<V
     let edges = Edges::of(&welded.triangles);
     let found = edges.cut(&marked).map(|edge| welded.places(edge.ends));
     found.chain(given).map(|segment| segment.to_vec()).collect()
+}
+
+/// A mesh welded, and sewn where its cracks are narrow beside the bound.
+fn sewn(mesh: &Mesh, max_error: f64) -> (Welded, Sewn) {
+    let mut welded = weld(mesh);
+    let sewn = sew(&mut welded, CRACK_SHARE * max_error);
+    (welded, sewn)
 }
 
 /// Which edges of a mesh are feature edges, and what was found.
@@ -169,6 +180,7 @@ pub(super) fn mark(welded: &Welded, features: &Features) -> (Vec<bool>, Found) {
         }
         Features::None => (vec![false; edges.edges.len()], None),
     };
-    let found = Found { feature_edges: marked.iter().filter(|mark| **mark).count(), matched };
+    let feature_edges = marked.iter().filter(|mark| **mark).count();
+    let found = Found { feature_edges, matched, sewn: Sewn::default() };
     (marked, found)
 }

@@ -46,6 +46,7 @@ pub mod refine;
 pub mod seams;
 pub mod segment_grid;
 pub mod sets;
+pub mod sew;
 pub mod sided;
 pub mod sides;
 pub mod smooth;

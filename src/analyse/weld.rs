@@ -25,6 +25,16 @@ impl Welded {
         vertices.map(|v| self.positions[v as usize].as_dvec3())
     }
 
+    /// Takes other triangles over the same vertices, in whatever order: sorted again, those that degenerate or repeat
+    /// and vertices no longer used disappear.
+    pub fn replace(&mut self, triangles: Vec<[u32; 3]>) {
+        let whole = triangles.into_iter().filter(has_three_corners);
+        self.triangles = whole.map(|corners| from(least(corners), corners)).collect();
+        self.triangles.par_sort_unstable();
+        self.triangles.dedup();
+        drop_unused(self);
+    }
+
     /// How far a triangle goes on beside the straight line through two vertices, model units.
     #[must_use]
     pub fn height(&self, face: u32, line: [u32; 2]) -> f64 {
@@ -93,13 +103,10 @@ fn canonical_triangles(mesh: &Mesh, place: &[u32]) -> Vec<([u32; 3], [u32; 3])> 
         .triangles
         .iter()
         .map(|corners| (corners.map(|v| place[v as usize]), *corners))
-        .filter(|([a, b, c], _)| a != b && b != c && c != a)
+        .filter(|(places, _)| has_three_corners(places))
         .map(|(places, corners)| {
-            // Turned so that the least place comes first; the orientation stays.
-            let [a, b, c] = places;
-            let turn = if a < b && a < c { 0 } else { 1 + usize::from(c < b) };
-            let turned = |of: [u32; 3]| [0, 1, 2].map(|n| of[(n + turn) % 3]);
-            (turned(places), turned(corners))
+            let first = least(places);
+            (from(first, places), from(first, corners))
         })
         .collect();
     let normal = |v: u32| mesh.vertices.normals.get(v as usize).map(|n| n.to_array().map(f32::to_bits));
@@ -108,6 +115,20 @@ fn canonical_triangles(mesh: &Mesh, place: &[u32]) -> Vec<([u32; 3], [u32; 3])> 
     });
     triangles.dedup_by_key(|triangle| triangle.0);
     triangles
+}
+
+fn has_three_corners([a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// Which of three is the least.
+fn least([a, b, c]: [u32; 3]) -> usize {
+    if a < b && a < c { 0 } else { 1 + usize::from(c < b) }
+}
+
+/// A triangle's corners from one of them on; the orientation stays.
+fn from(first: usize, corners: [u32; 3]) -> [u32; 3] {
+    [0, 1, 2].map(|n| corners[(n + first) % 3])
 }
 
 fn drop_unused(welded: &mut Welded) {

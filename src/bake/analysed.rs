@@ -115,6 +115,6 @@ fn of_cloud(
         cloud_surface(cloud, normals, lines, meant.noise, Some(reach), told, Some(max_error))?;
     // Creases found before the cloud was smoothed are not the user's.
     let matched = matched.filter(|_| matches!(options.edges, Edges::Given(_)));
-    let features = Found { feature_edges: edges, matched };
+    let features = Found { feature_edges: edges, matched, ..Found::default() };
     Ok(Analysed { surface, marked: None, features, left_out, discs, open_places, sparse })
 }

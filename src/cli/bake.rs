@@ -213,6 +213,9 @@ impl Arguments {
         if let Some(input) = report.input.as_ref().filter(|input| input.turned_triangles > 0) {
             notes.note(&turned_note(input));
         }
+        if let Some(input) = report.input.as_ref().filter(|input| input.sewn_vertices > 0) {
+            notes.note(&sewn_note(input));
+        }
         if let Some(input) = report.input.as_ref().filter(|input| input.outliers > 0) {
             notes.note(&outliers_note(input));
         }
@@ -292,6 +295,7 @@ impl Arguments {
             dropped_points: cloud.dropped as u64,
             dropped_triangles: dropped_triangles as u64,
             turned_triangles: turned_triangles as u64,
+            sewn_vertices: baked.features.sewn.vertices as u64,
             outliers: baked.left_out.len() as u64,
             open_places: open_places(&baked.open_places, &cloud.frame),
             open_place_count: baked.open_places.len() as u64,
@@ -367,6 +371,13 @@ fn turned_note(input: &report::Input) -> String {
     format!(
         "{turned_triangles} of {triangles} triangles faced the other way than most of the surface they belong to \
          and were turned"
+    )
+}
+
+fn sewn_note(input: &report::Input) -> String {
+    let sewn = input.sewn_vertices;
+    format!(
+        "{sewn} vertices beside cracks narrower than a sixteenth of the bound were joined to what lies across"
     )
 }
 

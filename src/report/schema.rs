@@ -29,6 +29,9 @@ pub struct Input {
     /// Triangles turned because they faced the other way than most of the surface they belong to.
     #[serde(default)]
     pub turned_triangles: u64,
+    /// Vertices beside cracks much narrower than the bound that were joined to what lies across.
+    #[serde(default)]
+    pub sewn_vertices: u64,
     /// Points of a cloud that belong to no surface and were left out: the bound does not hold for them.
     #[serde(default)]
     pub outliers: u64,

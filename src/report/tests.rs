@@ -55,6 +55,7 @@ fn origin(edges: &str, colors_left_out: &str, feature_edges: u64) -> Origin {
         dropped_points: 1,
         dropped_triangles: 2,
         turned_triangles: 4,
+        sewn_vertices: 5,
         outliers: 3,
         open_places: vec![OpenPlace { points: 30, middle: [1.0, 2.0, 3.0], reach: 0.5 }],
         open_place_count: 2,

@@ -1,8 +1,9 @@
 //! The error budget in model units, shared out for sampling.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::fit::clip::{ClipTolerance, Clips};
+use crate::fit::pose::miss;
 use crate::tolerance::{
     CLIP_LEAST_SHARE, CLIP_MISS_SHARE, CLIP_OUTSET_SHARE, CLIP_QUANTIZE_SHARE, CLOUD_LINE_SHARE,
     FAR_LINE_SHARE, FIT_SHARE, LINE_FIT_SHARE,
@@ -27,6 +28,8 @@ pub struct Budget {
     /// How far, in space, a rim may stand out where the surface folds away below it, if that is what
     /// it takes to do without a last resort.
     pub overhang: f64,
+    /// How far points of the input lie at most from the places of the surface that stand for them.
+    pub moved: f64,
     /// How far a large domain goes on beyond what it is trusted to cover: see [`Self::padded`].
     pub pad: f64,
     /// For clip curves.
@@ -74,6 +77,7 @@ impl Budget {
             far_line: FAR_LINE_SHARE * max_error,
             rim: RIM * FIT_SHARE * max_error,
             overhang: OVERHANG_SHARE * max_error,
+            moved: 0.0,
             pad: PAD_SHARE * max_error,
             clip,
             stored: ClipTolerance {
@@ -86,10 +90,27 @@ impl Budget {
         }
     }
 
+    /// The same over a surface whose places lie up to a distance, in model units, off the input's points that they
+    /// stand for.
+    #[must_use]
+    pub fn moved_by(self, moved: f64) -> Self {
+        Self { moved, ..self }
+    }
+
+    /// Whether a quadric of this curvature lies so near to a place, in splat coordinates, that it may cover it, and the
+    /// points of the input that it stands for. `slack` multiplies the distance allowed.
+    #[must_use]
+    pub fn covers(&self, curvature: DVec2, place: DVec3, slack: f64) -> bool {
+        let slope = 2.0 * curvature * place.truncate();
+        // A point aside of a place lies over what the quadric falls or rises by between them.
+        let off = self.moved * (1.0 + slope.length_squared()).sqrt();
+        miss(curvature, place) + off <= slack * self.fit
+    }
+
     /// A share of all of it.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Self {
-        let &Self { fit, line, cloud_line, far_line, rim, overhang, pad, clip, stored } = self;
+        let &Self { fit, line, cloud_line, far_line, rim, overhang, moved, pad, clip, stored } = self;
         Self {
             fit: share * fit,
             line: share * line,
@@ -97,6 +118,7 @@ impl Budget {
             far_line: share * far_line,
             rim: share * rim,
             overhang: share * overhang,
+            moved,
             pad: share * pad,
             clip: clip.scaled(share),
             stored: stored.scaled(share),
@@ -146,6 +168,23 @@ mod tests {
         let budget = Budget::new(0.01, Clips::Curved);
         for trusted in [DVec2::new(1e-4, 0.5), DVec2::new(0.02, 0.019), DVec2::new(0.0201, 3.0)] {
             assert!(budget.trusted(budget.padded(trusted)).distance(trusted) < 1e-15);
+        }
+    }
+
+    #[test]
+    fn what_was_moved_is_covered_only_where_the_places_it_came_from_are() {
+        let whole = Budget::new(0.01, Clips::Curved);
+        let moved = whole.moved_by(0.2 * whole.fit);
+        let over = |share: f64| DVec3::new(0.0, 0.0, share * whole.fit);
+        for (curvature, place, [before, after]) in [
+            (DVec2::ZERO, over(0.75), [true, true]),
+            (DVec2::ZERO, over(0.85), [true, false]),
+            (DVec2::ZERO, over(1.05), [false, false]),
+            // Where the quadric is steep, what lies aside lies over it.
+            (DVec2::new(1.0, 0.0), DVec3::new(1.0, 0.0, 1.0), [true, true]),
+            (DVec2::new(4.0, 0.0), DVec3::new(1.0, 0.0, 4.0), [true, false]),
+        ] {
+            assert_eq!([&whole, &moved].map(|budget| budget.covers(curvature, place, 1.0)), [before, after]);
         }
     }
 }

@@ -384,7 +384,7 @@ impl Grower<'_> {
 
     /// Whether a place is near enough to a quadric to be covered by it.
     pub(super) fn near(&self, curvature: DVec2, local: DVec3, slack: f64) -> bool {
-        miss(curvature, local) <= slack * self.budget.fit
+        self.budget.covers(curvature, local, slack)
     }
 
     /// Whether a place is near enough to a quadric that it may reach over it.

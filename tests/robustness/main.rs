@@ -93,6 +93,17 @@ fn a_sheet_that_is_seen_from_both_sides_takes_as_much_as_two() {
 }
 
 #[test]
+fn a_barrel_with_narrow_cracks_takes_about_as_much_as_a_whole_one() {
+    let bytes = |crack: f64| {
+        let delivery = run(&shapes::barrel(crack), &options(5, Edges::Auto)).unwrap().unwrap();
+        assert_eq!(delivery.baked.features.sewn.vertices > 0, crack > 0.0);
+        delivery.bytes.len()
+    };
+    let (whole, cracked) = (bytes(0.0), bytes(1e-4));
+    assert!(10 * cracked < 12 * whole, "{cracked} bytes for {whole}");
+}
+
+#[test]
 fn budgets_out_of_range_are_refused_and_huge_ones_are_kept() {
     let input = shapes::cube();
     for share in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9] {

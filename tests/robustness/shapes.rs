@@ -140,6 +140,30 @@ fn cube_and_a_line() -> Input {
     mesh(&points, faces)
 }
 
+/// A barrel of patches whose borders lie apart by up to some four times a share of its radius.
+pub fn barrel(crack: f64) -> Input {
+    let (around, up) = (24_u32, 12_u32);
+    let mut state = 11;
+    let mut points = Vec::new();
+    let mut faces = Vec::new();
+    // Patches of four cells a side.
+    for (patch_i, patch_j) in (0..around / 4).flat_map(|i| (0..up / 4).map(move |j| (i, j))) {
+        let first = points.len() as u32;
+        for (i, j) in (0..=4).flat_map(|i| (0..=4).map(move |j| (i, j))) {
+            let turn = std::f64::consts::TAU * f64::from((4 * patch_i + i) % around) / f64::from(around);
+            let rise = std::f64::consts::PI * (0.2 + 0.6 * f64::from(4 * patch_j + j) / f64::from(up));
+            let ((sin, cos), (wide, high)) = (libm::sincos(turn), libm::sincos(rise));
+            let mut aside = || 2.0 * crack * (random(&mut state) - 0.5);
+            points.push(p(wide * cos + aside(), wide * sin + aside(), high + aside()));
+        }
+        for a in (0..4).flat_map(|i| (0..4).map(move |j| first + 5 * i + j)) {
+            let (b, c, d) = (a + 5, a + 6, a + 1);
+            faces.extend([[a, c, b], [a, d, c]]);
+        }
+    }
+    mesh(&points, faces)
+}
+
 /// All cases, named.
 pub fn all() -> Vec<(&'static str, Input)> {
     let square = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 0.0)];
@@ -162,6 +186,8 @@ pub fn all() -> Vec<(&'static str, Input)> {
         ("a cone", cone()),
         ("a cube", cube()),
         ("a cube and a line", cube_and_a_line()),
+        ("a barrel with cracks as wide as the bound", barrel(5e-3)),
+        ("a barrel with cracks that may be closed", barrel(1e-4)),
         ("1000 random triangles", soup(1000)),
     ]
 }
