@@ -78,8 +78,17 @@ pub struct Speller<'a> {
 /// The curves before it that cross a splat, the nearest first, as far as they were looked for.
 #[derive(Clone, Debug, Default)]
 struct Crossings {
-    found: Vec<Conic>,
+    found: Vec<Crossing>,
     looked_at: usize,
+}
+
+/// A curve before it that crosses a splat.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    /// In the splat's plane.
+    conic: Conic,
+    /// What it makes one that follows it, once that was asked: many are that follow the same.
+    guess: Option<Option<Guess>>,
 }
 
 impl<'a> Speller<'a> {
@@ -182,11 +191,13 @@ impl<'a> Speller<'a> {
     }
 
     fn guess(&self, led: Led, form: Form) -> Option<Guess> {
-        guess(&self.crossing(led, form)?, self.sizes, self.grids)
+        self.with_crossing(led, form, |Crossing { conic, guess: known }| {
+            *known.get_or_insert_with(|| guess(conic, self.sizes, self.grids))
+        })?
     }
 
-    /// A curve before it that crosses the splat, as it does if it is of this form.
-    fn crossing(&self, led: Led, form: Form) -> Option<Conic> {
+    /// Asks a curve before it that crosses the splat, as it does if it is of this form; `None` if there is none.
+    fn with_crossing<T>(&self, led: Led, form: Form, ask: impl FnOnce(&mut Crossing) -> T) -> Option<T> {
         let rank = usize::try_from(led.rank).ok()?;
         let kind = 2 * form as usize + usize::from(led.across);
         let known = &mut self.crossings.borrow_mut()[kind];
@@ -194,9 +205,9 @@ impl<'a> Speller<'a> {
         while known.found.len() <= rank {
             let crossing = rest.next()?.crossing(&self.splat, form, led.across, self.grids.budget);
             known.looked_at += 1;
-            known.found.extend(crossing);
+            known.found.extend(crossing.map(|conic| Crossing { conic, guess: None }));
         }
-        Some(known.found[rank])
+        Some(ask(&mut known.found[rank]))
     }
 
     /// The cheapest spelling of a curve; `None` for numbers that no curve of a file has.
@@ -222,11 +233,11 @@ impl<'a> Speller<'a> {
         let mut near = Vec::new();
         for across in [false, true] {
             let ranked = (0..LOOKED_AT).map(|rank| Led { across, rank });
-            for (led, conic) in ranked.map_while(|led| Some((led, self.crossing(led, form)?))) {
-                if conic.p1.distance(p1) <= most && conic.p3.distance(p3) <= most {
-                    near.extend(guess(&conic, self.sizes, self.grids).map(|guess| (led, guess)));
-                }
-            }
+            let is_near = |conic: &Conic| conic.p1.distance(p1) <= most && conic.p3.distance(p3) <= most;
+            let asked = ranked
+                .map_while(|led| Some((led, self.with_crossing(led, form, |one| is_near(&one.conic))?)));
+            let found = asked.filter(|&(_, is_near)| is_near);
+            near.extend(found.filter_map(|(led, _)| Some((led, self.guess(led, form)?))));
         }
         near
     }

@@ -102,7 +102,12 @@ impl Curves<'_> {
     /// less of one, and none that leaves no more costs less.
     fn better(&mut self, n: usize, clip: &ClipRecord, speller: &Speller<'_>) -> Option<ClipRecord> {
         let (grids, sizes) = (self.grids, self.sizes);
-        let fitted: Vec<DVec2> = grids.conic(clip, sizes).points(COMPARED.1).collect();
+        let sides = match Form::of(clip) {
+            Form::Straight => 1,
+            Form::Corner => 2,
+            Form::Curved => COMPARED.1,
+        };
+        let fitted: Vec<DVec2> = grids.conic(clip, sizes).points(sides).collect();
         let near =
             |other: &ClipRecord| strays(&grids.conic(other, sizes), &fitted) <= FARTHEST * grids.budget;
         let mut offers = self.offers(n, clip, speller)?;
