@@ -7,6 +7,8 @@
 //! A guess must come out the same in every decoder, so only `+ - * /`, square roots and comparisons of
 //! 64-bit floats are used, in the order written.
 
+use std::f64::consts::PI;
+
 use glam::{DVec2, DVec3};
 
 use super::grid::{CONTROL_LIMIT, Grids, Size, rho_steps};
@@ -246,9 +248,18 @@ fn border_step(point: DVec2, sizes: [Size; 2], grids: &Grids) -> u64 {
         let (sin, cos) = turns::sin_cos(number, count);
         cos * y - sin * x >= 0.0
     };
-    // The last step whose direction is not beyond (x, y), by halving.
-    let (mut low, mut high) = (0, count / 2);
-    while high - low > 1 {
+    // The last step whose direction is not beyond (x, y), by halving what an estimate leaves; how good that is does not
+    // matter for what is found.
+    let half = count / 2;
+    let near = (libm::atan2(y, x) / PI * half as f64) as u64;
+    let (mut low, mut high) = (near.saturating_sub(1).min(half), (near + 2).min(half));
+    if low > 0 && !is_passed(low, count) {
+        low = 0;
+    }
+    if high < half && is_passed(high, count) {
+        high = half;
+    }
+    while high > low + 1 {
         let middle = (low + high) / 2;
         if is_passed(middle, count) {
             low = middle;

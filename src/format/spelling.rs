@@ -244,7 +244,9 @@ impl<'a> Speller<'a> {
 
     /// A curve told by a guess, or by itself, in the coarsest steps that reach it.
     fn spelled(&self, clip: &ClipRecord, led: Option<Led>, guess: Option<Guess>) -> Option<Spelling> {
-        let mut rounded = (0..GRAINS).map(|grain| self.rounded(clip, led, guess, grain));
+        let most = common_zeros(clip, guess);
+        let grains = (0..GRAINS).filter(|&grain| unit(grain).trailing_zeros() <= most);
+        let mut rounded = grains.map(|grain| self.rounded(clip, led, guess, grain));
         rounded.find(|told| self.meant_by(told, guess).is_ok_and(|meant| meant == *clip))
     }
 
@@ -280,6 +282,18 @@ impl<'a> Speller<'a> {
         let rho = clip.rho as f64 / rho_steps(clip.control) as f64 * rho_steps(corner.control) as f64;
         nearest((rho + 0.5).floor() as i64 - self.rho_guess(&corner, guess), unit(told.grain) as i64)
     }
+}
+
+/// How often all that a curve's ends and its control point are off a guess, or from nothing, can be halved: in units
+/// of more steps than that gives they are not told.
+fn common_zeros(clip: &ClipRecord, guess: Option<Guess>) -> u32 {
+    let [start, sweep] = [clip.start as i64, clip.sweep as i64];
+    let [ends, near] = match guess {
+        None => [[start, sweep], [0; 2]],
+        Some(guess) => [[start - guess.start as i64, start + sweep - guess.end as i64], guess.control],
+    };
+    let control = if clip.rho == 0 { [0; 2] } else { [0, 1].map(|n| clip.control[n] - near[n]) };
+    (ends[0] | ends[1] | control[0] | control[1]).trailing_zeros()
 }
 
 /// The nearest number of units.
