@@ -6,6 +6,13 @@ use super::splat::Splat;
 /// reach together (equation 1 of the paper, which prints the sign the other way round).
 #[must_use]
 pub fn neighbours(splats: &[Splat]) -> Vec<[u32; 2]> {
+    neighbours_up_to(splats, usize::MAX).unwrap_or_default()
+}
+
+/// The same, unless there are more: where thousands of splats lie in one heap each meets all, and what is done for each
+/// pair never ends.
+#[must_use]
+pub fn neighbours_up_to(splats: &[Splat], most: usize) -> Option<Vec<[u32; 2]>> {
     let reach: Vec<f64> = splats.iter().map(Splat::bounding_radius).collect();
     let low = |n: u32| splats[n as usize].center.x - reach[n as usize];
     let mut order: Vec<u32> = (0..splats.len() as u32).collect();
@@ -16,10 +23,13 @@ pub fn neighbours(splats: &[Splat]) -> Vec<[u32; 2]> {
         for &b in order[at + 1..].iter().take_while(|&&b| low(b) < high) {
             let together = reach[a as usize] + reach[b as usize];
             if splat.center.distance_squared(splats[b as usize].center) < together * together {
+                if pairs.len() == most {
+                    return None;
+                }
                 pairs.push([a.min(b), a.max(b)]);
             }
         }
     }
     pairs.sort_unstable();
-    pairs
+    Some(pairs)
 }

@@ -6,7 +6,7 @@ use glam::DVec2;
 use crate::analyse::surface::Rows;
 use crate::model::clip_curve::{ClipCurve, Conic};
 use crate::model::curve_ends::{End, beyond, ends, over, step};
-use crate::model::neighbours::neighbours;
+use crate::model::neighbours::neighbours_up_to;
 use crate::model::splat::Splat;
 use crate::tolerance::STEP_SHARE;
 
@@ -35,13 +35,18 @@ struct Over {
     step: f64,
 }
 
+/// Splats may meet so many others on average: in heaps of more, which no surface makes, the work for every curve grows
+/// with the square of that.
+const CROWDED: usize = 500;
+
 impl Steps {
-    /// Those of splats under a bound.
-    pub(super) fn new(splats: &[Splat], max_error: f64) -> Self {
-        let pairs = neighbours(splats).into_iter().flat_map(|[a, b]| [(a, b), (b, a)]).collect();
+    /// Those of splats under a bound; `None` where these lie in heaps.
+    pub(super) fn new(splats: &[Splat], max_error: f64) -> Option<Self> {
+        let most = CROWDED * splats.len() / 2;
+        let pairs = neighbours_up_to(splats, most)?.into_iter().flat_map(|[a, b]| [(a, b), (b, a)]).collect();
         let near = Rows::from_pairs(splats.len(), pairs);
         let splats = splats.iter().cloned().map(Cut::new).collect();
-        Self { splats, near, max_error, at: 0, ends: Vec::new() }
+        Some(Self { splats, near, max_error, at: 0, ends: Vec::new() })
     }
 
     /// What follows is about this splat.
@@ -92,6 +97,8 @@ impl Cut {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use std::f64::consts::PI;
 
     use glam::DVec3;
@@ -117,7 +124,7 @@ mod tests {
 
     /// The sums of splats with the curves they have, in bounds.
     fn sums(splats: &[Splat]) -> Vec<f64> {
-        let mut steps = Steps::new(splats, BOUND);
+        let mut steps = Steps::new(splats, BOUND).unwrap();
         let sum = |index: usize| {
             steps.turn_to(index);
             steps.sum(&splats[index].clips) / BOUND
@@ -137,9 +144,15 @@ mod tests {
     }
 
     #[test]
+    fn splats_in_heaps_are_let_be() {
+        let heap = |count: usize| Steps::new(&vec![disc(0.0, [0.0; 2]); count], BOUND);
+        assert!(heap(CROWDED + 1).is_some() && heap(CROWDED + 2).is_none());
+    }
+
+    #[test]
     fn what_is_taken_counts_for_the_next() {
         let splats = [disc(0.0, [0.0; 2]), disc(1.0, [0.5; 2])];
-        let mut steps = Steps::new(&splats, BOUND);
+        let mut steps = Steps::new(&splats, BOUND).unwrap();
         let level = disc(1.0, [0.0; 2]).clips;
         steps.turn_to(1);
         let after = steps.sum(&level);

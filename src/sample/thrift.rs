@@ -26,7 +26,7 @@ pub type Saving<'a> = dyn Fn(&mut [Splat], &mut dyn Trial) -> Result<()> + Sync 
 const ROUNDS: usize = 2;
 
 impl Cover {
-    /// Lets clip curves of the chosen be changed, under the bound of the file.
+    /// Lets clip curves of the chosen be changed, under the bound of the file; not where splats lie in heaps.
     ///
     /// # Errors
     /// Those of `saving`.
@@ -40,7 +40,7 @@ impl Cover {
         let mut splats = self.splats();
         regions.with(|region| {
             let (candidates, chosen) = (&self.candidates, &self.chosen);
-            let steps = Steps::new(&splats, max_error);
+            let Some(steps) = Steps::new(&splats, max_error) else { return Ok(()) };
             let mut cuts = Cuts { grower, candidates, chosen, region, steps, at: None };
             (0..ROUNDS).try_for_each(|_| saving(&mut splats, &mut cuts))
         })?;

@@ -122,6 +122,19 @@ fn soup(count: u32) -> Input {
     mesh(&points, (0..count).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect())
 }
 
+/// Triangles strewn over a place a few bounds wide, and a square.
+fn heap(count: u32) -> Input {
+    let mut state = 9;
+    let mut draw = || p(random(&mut state), random(&mut state), random(&mut state)) - 0.5;
+    let mut points = vec![p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 0.0)];
+    for _ in 0..count {
+        let middle = 0.02 * draw();
+        points.extend([0; 3].map(|_| middle + 0.003 * draw()));
+    }
+    let strewn = (0..count).map(|n| [3 * n + 4, 3 * n + 5, 3 * n + 6]);
+    mesh(&points, [[0, 1, 2], [0, 2, 3]].into_iter().chain(strewn).collect())
+}
+
 /// A cone from a rim to a tip that all triangles share.
 fn cone() -> Input {
     let rim = (0..64).map(|n| {
@@ -189,5 +202,6 @@ pub fn all() -> Vec<(&'static str, Input)> {
         ("a barrel with cracks as wide as the bound", barrel(5e-3)),
         ("a barrel with cracks that may be closed", barrel(1e-4)),
         ("1000 random triangles", soup(1000)),
+        ("2500 triangles in a heap", heap(2500)),
     ]
 }
